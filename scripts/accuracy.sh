@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the figures of docs/accuracy.md: the Cornell box against two other renderers.
+# Prints the figures of docs/benchmarks/accuracy.md: the Cornell box against two other renderers.
 # usage: scripts/accuracy.sh FOLDER [PATCHES ...]
 # FOLDER holds cornell.obj and cornell_reference.csv; without it there is nothing to compare with.
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what an accuracy that is asked for gives and costs in ten rooms: the table of docs/accuracy.md. Takes some
+# Measures what an accuracy that is asked for gives and costs in ten rooms: the table of docs/benchmarks/accuracy.md. Takes some
 # twenty minutes.
 # usage: scripts/accuracy_table.sh OUT [ACCURACIES [REFERENCE_PATCHES]]
 # ACCURACIES are percentages, 3,1,0.3 by default. Writes OUT/rooms and OUT/accuracy.md. PATCHLIGHT_BENCHMARKS may name the

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints what an accuracy takes without and with lines of contact, and the table of docs/accuracy.md on hard rooms.
+# Prints what an accuracy takes without and with lines of contact, and the table of docs/benchmarks/accuracy.md on hard rooms.
 # usage: scripts/contact_lines.sh TOOL
 set -euo pipefail
 tool=${1:?usage: scripts/contact_lines.sh TOOL}

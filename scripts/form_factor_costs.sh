@@ -38,7 +38,7 @@ curve() {
     --benchmark_enable_random_interleaving=true
 }
 
-# errors ROOM PATCHES SAMPLES: against a reference with so many samples for a small form factor, docs/theory.md section 5.
+# errors ROOM PATCHES SAMPLES: against a reference with so many samples for a small form factor, docs/theory/occluded-form-factors.md.
 errors() {
   measure form_factor_errors errors "$1" "$2" "$out/$1_$2_$3.reference" "$3"
 }

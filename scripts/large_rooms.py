@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints what rows of rays cost and err in large rooms, as the table in docs/theory.md section 12.
+"""Prints what rows of rays cost and err in large rooms, as the table in docs/benchmarks/speed.md.
 
 usage: scripts/large_rooms.py BUILD [--room boxes|uplight|spheres] [--patches N,N...] [--checked N] [--paths N] [--rays N]
 

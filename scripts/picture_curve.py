@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What pictures of two rooms err by, against the processor seconds that they take: a table for docs/pictures.md.
+"""What pictures of two rooms err by, against the processor seconds that they take: a table for docs/benchmarks/pictures.md.
 
 usage: scripts/picture_curve.py TOOL FOLDER [--patches N]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/pictures.md, and prints what the final one takes in processor seconds.
+# Makes the pictures of docs/benchmarks/pictures.md, and prints what the final one takes in processor seconds.
 # usage: scripts/pictures.sh [TOOL]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures what progressive refinement shows, with rows of form factors on demand, and prints the tables of
-# docs/solvers.md. Takes less than a minute. usage: scripts/progressive_curve.sh OUT
+# docs/benchmarks/solvers.md. Takes less than a minute. usage: scripts/progressive_curve.sh OUT
 # OUT takes progressive.png, the figure there, and a CSV per model.
 # PATCHLIGHT_BENCHMARKS may name the folder of benchmark programs that are built already.
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints how far the error bars of rows of rays hold in six scenes, as the table in docs/theory.md section 12.
+"""Prints how far the error bars of rows of rays hold in six scenes, as the table in docs/benchmarks/accuracy.md.
 
 usage: scripts/ray_bars.py BUILD [--patches N] [--checked N] [--paths N]
 

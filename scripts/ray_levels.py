@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints how far the level of the light scatters that rows of rays find in a bright room: docs/theory.md section 12.
+"""Prints how far the level of the light scatters that rows of rays find in a bright room: docs/theory/ray-method-solution.md.
 
 usage: scripts/ray_levels.py TOOL MODEL [--reflectance R,R...] [--patches N,N...] [--seeds N]
 

@@ -24,7 +24,7 @@ mkdir -p "$out"
 check_flux() {
   python3 - "$1" <<'END'
 import json, sys
-arriving = 179 * json.load(open(sys.argv[1]))["energy_balance"]["arriving_W"][0]  # lm/W, docs/lights.md
+arriving = 179 * json.load(open(sys.argv[1]))["energy_balance"]["arriving_W"][0]  # lm/W, docs/concepts/units-and-photometry.md
 stated = 5297.4
 error = arriving / stated - 1
 print(f"real models: ies: {arriving:.1f} lm arrive on the walls, {stated} lm expected: {100 * error:+.3f} %")

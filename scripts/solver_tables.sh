@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures what every solver needs and writes the tables of docs/solvers.md. Takes some ten minutes.
+# Measures what every solver needs and writes the tables of docs/benchmarks/solvers.md. Takes some ten minutes.
 # usage: scripts/solver_tables.sh OUT
 # Writes OUT/solvers.md. PATCHLIGHT_BENCHMARKS may name the folder of benchmark programs that are built already.
 set -euo pipefail

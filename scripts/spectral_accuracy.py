@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures how far colours are off by the number of bands, and what bands cost; prints the tables of docs/accuracy.md.
+"""Measures how far colours are off by the number of bands, and what bands cost; prints the tables of docs/benchmarks/accuracy.md.
 
 usage: scripts/spectral_accuracy.py TOOL FOLDER [--patches N]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Prints where pairs and rows of rays cross: the error that a solution states and the processor seconds that it takes,
-with either storage and more and more patches: docs/theory.md section 12.
+with either storage and more and more patches: docs/benchmarks/speed.md.
 
 usage: scripts/storage_costs.py TOOL [--models M,M...] [--patches N,N...]
 

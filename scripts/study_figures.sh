@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the plots and the tables of docs/accuracy.md on what accuracy costs. Takes some four minutes.
+# Makes the plots and the tables of docs/benchmarks/accuracy.md on what accuracy costs. Takes some four minutes.
 # usage: scripts/study_figures.sh OUT
 # Writes OUT/cornell_box and OUT/two_rooms, with what `patchlight convergence` prints as OUT/*.txt, and the plots of the Cornell
 # box into docs/figures. PATCHLIGHT_TOOL may name a tool that is built already.

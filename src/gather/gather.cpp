@@ -37,7 +37,7 @@ constexpr double damping = 1e-6;
 constexpr std::size_t slopes_of_a_plane = 2;
 
 // An allowance: of a radiosity that is curved evenly, a sixth of the residual at the patches around is left at the edge
-// of the patch, and more where it has a peak narrower than these. docs/theory.md section 10 has what it comes to.
+// of the patch, and more where it has a peak narrower than these. docs/theory/irradiance-at-a-point.md has the value.
 constexpr double residual_inside = 0.5;
 
 // Patches whose radiosities differ by no more than this factor are taken to see each other.

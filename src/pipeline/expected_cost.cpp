@@ -77,9 +77,9 @@ double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder
 
 // Processor seconds on one core of an AMD EPYC, by tests/benchmarks/effects.cpp.
 constexpr double seconds_per_hemisphere_ray = 2.5e-7;
-constexpr double seconds_per_light_ray = 2.2e-7;  // docs/lights.md: 0.9 s for 3,980 patches and 1,024 rays
+constexpr double seconds_per_light_ray = 2.2e-7;  // 0.9 s for 3,980 patches and 1,024 rays
 
-// docs/theory.md section 12, of 32,000 to a million patches.
+// docs/benchmarks/speed.md, of 32,000 to a million patches.
 constexpr double seconds_per_row_of_rays = 1.2e-4;
 constexpr double seconds_of_solution_by_rays = 1.6e-5;  // per patch, with last gather and smoothing
 

@@ -98,8 +98,8 @@ std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eige
 // limit of rows, SolverOptions::max_rows, a patch of each group of CoarseTransport shoots before, so that a first
 // picture is known roughly everywhere. Cohen, Chen, Wallace and Greenberg 1988; it is Southwell relaxation of the same
 // system (Gortler, Cohen and Slusallek 1994). Overshooting (Feda and Purgathofer 1992) shoots beforehand what is
-// expected to come, and a little more than what is unshot: over-relaxation. docs/theory.md section 7. Takes single
-// rows of the transport. An iteration's number is that of its shots.
+// expected to come, and a little more than what is unshot: over-relaxation. docs/theory/progressive-refinement.md.
+// Takes single rows of the transport. An iteration's number is that of its shots.
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot) {
   const RadiosityProblem& problem = iterations.problem();
   const Eigen::Index n = problem.exitance.rows();

@@ -1,5 +1,5 @@
-// What leaving an effect out saves, on a scene made for it: the table of docs/effects.md, in Markdown, and how exact
-// expected_cost() is.
+// What leaving an effect out saves, on a scene made for it: the table of docs/benchmarks/speed.md, in Markdown, and how
+// exact expected_cost() is.
 // usage: benchmark_effects [PATCHES]
 #include "patchlight/simulate.h"
 

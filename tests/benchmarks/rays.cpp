@@ -1,4 +1,4 @@
-// Rows of rays against path tracing: cost and error of a whole run. docs/theory.md section 12, scripts/large_rooms.py.
+// Rows of rays against path tracing: cost and error of a whole run. docs/benchmarks/speed.md, scripts/large_rooms.py.
 //
 // usage: benchmark_rays MODEL PATCHES [CHECKED [PATHS [RAYS]]]
 #include "patchlight/input/read_scene.h"

@@ -1,4 +1,4 @@
-// What every solver needs in the test room and in two rooms: the tables of docs/solvers.md, in Markdown.
+// What every solver needs in the test room and in two rooms: the tables of docs/benchmarks/solvers.md, in Markdown.
 #include "patchlight/input/read_scene.h"
 #include "patchlight/solve/solve.h"
 
