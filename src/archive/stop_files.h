@@ -12,7 +12,8 @@
 
 namespace patchlight {
 
-// The files of rays that are specular on their way, in a folder of rows of rays. docs/output.md describes them.
+// The files of rays that are specular on their way, in a folder of rows of rays.
+// docs/reference/outputs/form-factor-folder.md describes them.
 
 /// Writes those of one half. \throws OutputError.
 void write_stops(const std::filesystem::path& folder, std::size_t half, const RayRows& rows);
