@@ -1,14 +1,5 @@
-#!/usr/bin/env python3
-"""Says how large the errors of a final picture are, as shares of its luminances, and how two pictures differ.
-
-usage: scripts/compare_pictures.py PICTURE.exr [OTHER.exr]
-
-Both are what patchlight render writes. As in --picture-error, an error counts relative to the luminance, or to a
-twentieth of the luminance below which nine of ten pixels stay. Pixels whose middle shows no patch have no part.
-"""
-import math
+"""Reads the OpenEXR images that `patchlight render` writes, without other libraries."""
 import struct
-import sys
 import zlib
 
 
@@ -61,34 +52,3 @@ def plain(block, size):
     out = bytearray(size)
     out[0::2], out[1::2] = coded[:(size + 1) // 2], coded[(size + 1) // 2:]
     return bytes(out)
-
-
-def quantile(values, share):
-    return sorted(values)[int(share * (len(values) - 1))]
-
-
-def tell(name, values):
-    rms = math.sqrt(sum(v * v for v in values) / len(values))
-    print(f"{name}: rms {100 * rms:.2f} %, median {100 * quantile([abs(v) for v in values], .5):.2f} %, "
-          f"nine of ten below {100 * quantile([abs(v) for v in values], .9):.2f} %, "
-          f"above 1 %: {100 * sum(abs(v) > .01 for v in values) / len(values):.1f} % of the pixels")
-
-
-def main():
-    if len(sys.argv) not in (2, 3):
-        raise SystemExit(__doc__)
-    first = layers(sys.argv[1])
-    luminances = first["luminance.Y"]
-    least = quantile([v for v in luminances if v > 0], .9) / 20
-    shown = [k for k, patch in enumerate(first["patch.id"]) if patch != 0xffffffff]
-    scale = [max(v, least) for v in luminances]
-    tell("stated error", [first["error.Y"][k] / scale[k] for k in shown])
-    if len(sys.argv) == 3:
-        other = layers(sys.argv[2])["luminance.Y"]
-        tell("difference", [(luminances[k] - other[k]) / scale[k] for k in shown])
-        mean = sum(other[k] for k in shown) / len(shown)
-        print(f"mean differs by {100 * (sum(luminances[k] for k in shown) / len(shown) / mean - 1):+.3f} %")
-
-
-if __name__ == "__main__":
-    main()
