@@ -11,7 +11,7 @@ packages=(
   libgtest-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
 )
 
-docs=(python3-sphinx python3-myst-parser furo python3-sphinxcontrib.bibtex python3-nbsphinx)
+docs=(python3-sphinx python3-myst-parser furo python3-sphinxcontrib.bibtex libjs-mathjax)
 [ "${1:-}" != docs ] || packages+=("${docs[@]}")
 
 # Node.js of any origin will do.
