@@ -33,7 +33,7 @@
 namespace patchlight {
 namespace {
 
-// The files of rays that are specular on their way, in a folder of rows of rays. docs/output.md describes them.
+// The files of rays that are specular on their way, in a folder of rows of rays. docs/reference/outputs/form-factor-folder.md describes them.
 
 // What stops may name.
 struct NumbersOf {

@@ -75,7 +75,7 @@ double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder
   return seconds * all / static_cast<double>(done);
 }
 
-// Processor seconds on one core of an AMD EPYC, by tests/benchmarks/effects.cpp.
+// Processor seconds on one core of an AMD EPYC.
 constexpr double seconds_per_hemisphere_ray = 2.5e-7;
 constexpr double seconds_per_light_ray = 2.2e-7;  // 0.9 s for 3,980 patches and 1,024 rays
 
