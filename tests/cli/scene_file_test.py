@@ -48,7 +48,7 @@ class SceneFileTest(ToolTest):
         # The dividing wall of the two rooms is 0.1 m thick, from x = 4, and has a door from y = 1 to 1.9.
         points = ", ".join(f"[{x}, {y}, 0.8, 0, 0, 1]" for x in (3, 4.05, 5) for y in (0.5, 1.4, 2.4))
         rows = self.readings(f'[[model]]\nfile = "{MESHES}/two_rooms.obj"\n[[sensors]]\nname = "plane"\n'
-                             f'points = [{points}]\n', "--patches", 500, "--report", "report.json")
+                             f'points = [{points}]\n', "--patches", 500, "--json", "report.json")
         inside = [(float(r["x"]), float(r["y"])) for r in rows if r["inside_wall"] == "1"]
         self.assertEqual(inside, [(4.05, 0.5), (4.05, 2.4)])
         read = [float(r["E_g"]) for r in rows if r["inside_wall"] == "0"]
