@@ -1,0 +1,60 @@
+#pragma once
+
+#include "patchlight/light/material.h"
+#include "patchlight/scene/scene.h"
+
+#include "input/obj/mtl_mirror.h"
+#include "input/obj/mtl_pane.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// How a picture is put on: -s, -o and -clamp.
+struct TextureOptions {
+  Eigen::Vector2d scale{1, 1};
+  Eigen::Vector2d offset{0, 0};
+  bool clamp = false;
+};
+
+/// A material of an MTL file.
+struct MtlMaterial {
+  std::string name;
+  Spectrum reflectance;                        ///< Kd
+  Spectrum radiance;                           ///< Ke, W/(m^2 sr)
+  Spectrum ambient;                            ///< Ka
+  bool has_reflectance = false;                ///< Kd is given
+  bool is_specular = false;                    ///< Ks is not 0
+  std::vector<std::string> textures;           ///< the files of map_, bump, disp, refl and norm
+  std::string diffuse_texture;                 ///< the file of map_Kd, by read_libraries() its place
+  TextureOptions texture_options;              ///< those of map_Kd
+  std::uint32_t texture_line = 0;              ///< on which map_Kd stands
+  std::string mask_picture;                    ///< the file of map_d, by read_libraries() its place
+  std::uint32_t mask_line = 0;                 ///< on which map_d stands
+  bool has_ignored_mask = false;               ///< map_d has options that are not heeded; then it has no mask_picture
+  bool has_mask = false;                       ///< the picture of map_d was read
+  double covered = 1;                          ///< the share of the surface that map_d leaves
+  bool has_mean = false;                       ///< the mean colour of map_Kd is in the reflectance
+  std::optional<TexturedReflectance> texture;  ///< what it is the mean of, where that has more than one colour
+  std::optional<MtlPane> pane;                 ///< what d, Tr, Tf, Ni and illum make of it
+  std::optional<MtlMirror> mirror;             ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
+  bool is_contradictory = false;               ///< d and Tr contradict each other
+  bool is_mirror_or_glass = false;             ///< illum 3 to 9
+  bool is_metallic = false;                    ///< Pm is not 0
+};
+
+/// Reads the materials of an MTL file; of materials with the same name the first is kept.
+/// \throws InputError naming `file` and the line when Kd, Ks, Ke or Tf is not three finite numbers, or d, Tr, Ni,
+/// Ns, Pr or Pm is not one.
+std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file);
+
+/// One sentence per property that these materials have and the simulation ignores.
+std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials);
+
+/// The numbers of materials with properties that have a place in the plan.
+std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials);
+
+}  // namespace patchlight
