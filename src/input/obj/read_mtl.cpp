@@ -2,7 +2,10 @@
 
 #include "patchlight/base/error.h"
 
+#include "base/rounded.h"
 #include "input/materials.h"
+#include "input/stated_mirrors.h"
+#include "input/stated_panes.h"
 #include "input/text.h"
 
 #include <map>
@@ -13,6 +16,36 @@
 
 namespace patchlight {
 namespace {
+
+// Refraction, with ray tracing or without.
+bool is_of_glass(int illumination) {
+  return illumination == 4 || illumination == 6 || illumination == 7 || illumination == 9;
+}
+
+std::string shown(const Spectrum& filter) {
+  return "Tf " + rounded(filter[0]) + " " + rounded(filter[1]) + " " + rounded(filter[2]);
+}
+
+MtlPane pane_with(const MtlTransparency& stated, const Spectrum& transmittance, std::string statement) {
+  return {transmittance, plausible_index(stated.index.value_or(usual_index)), std::move(statement)};
+}
+
+// What goes through by d or Tr, coloured by Tf: one of 0 is a default that would make the material opaque.
+MtlPane filtered(const MtlTransparency& stated, double share, const std::string& statement) {
+  const bool is_coloured = stated.filter && (*stated.filter > 0).any() && (*stated.filter != 1).any();
+  if (!is_coloured) return pane_with(stated, Spectrum::Constant(3, share), statement);
+  return pane_with(stated, share * *stated.filter, statement + " and " + shown(*stated.filter));
+}
+
+// Reflection without refraction, with ray tracing or without.
+bool is_of_mirror(int illumination) { return illumination == 3 || illumination == 5 || illumination == 8; }
+
+// Blender writes Ns 1000 for a roughness of 0, and 250 for its usual one of 0.5.
+bool is_smooth(const MtlReflection& stated) {
+  constexpr double least_exponent = 900;
+  return stated.exponent.value_or(least_exponent) >= least_exponent && stated.roughness <= most_roughness &&
+         !stated.has_textures;
+}
 
 // Kd and Ke of one material, what lets light through, and what reflects it as a mirror does.
 struct Statements {
@@ -154,6 +187,39 @@ std::vector<std::string> names_with(std::span<const MtlMaterial> materials, bool
 }
 
 }  // namespace
+
+std::optional<MtlPane> mtl_pane(const MtlTransparency& stated) {
+  if (is_contradictory(stated)) return std::nullopt;
+  if (stated.dissolve) {
+    const double d = *stated.dissolve;
+    return d >= 0 && d < 1 ? std::optional(filtered(stated, 1 - d, "d " + rounded(d))) : std::nullopt;
+  }
+  if (stated.transparency) {
+    const double tr = *stated.transparency;
+    return tr > 0 && tr <= 1 ? std::optional(filtered(stated, tr, "Tr " + rounded(tr))) : std::nullopt;
+  }
+  if (!is_of_glass(stated.illumination) || !stated.filter) return std::nullopt;
+  if (!(*stated.filter > 0).any() || (*stated.filter >= 1).all()) return std::nullopt;
+  return pane_with(stated, *stated.filter, shown(*stated.filter) + " and illum " + std::to_string(stated.illumination));
+}
+
+bool is_contradictory(const MtlTransparency& stated) {
+  if (!stated.dissolve || !stated.transparency) return false;
+  return (*stated.dissolve >= 1 && *stated.transparency > 0) || (*stated.dissolve <= 0 && *stated.transparency <= 0);
+}
+
+std::optional<MtlMirror> mtl_mirror(const MtlReflection& stated) {
+  if (!is_of_mirror(stated.illumination) || !is_smooth(stated) || !stated.specular) return std::nullopt;
+  if (!(*stated.specular > 0).any()) return std::nullopt;
+  const std::string statement = "illum " + std::to_string(stated.illumination);
+  if (stated.metallic >= least_metallic) {
+    if (!(stated.diffuse > 0).any()) return std::nullopt;
+    return MtlMirror{stated.diffuse, Spectrum::Zero(3), statement + " and Pm " + rounded(stated.metallic)};
+  }
+  // Where the diffuse part takes all, none is left.
+  if (!(stated.specular->min(1 - stated.diffuse) > 0).any()) return std::nullopt;
+  return MtlMirror{*stated.specular, stated.diffuse, statement};
+}
 
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file) {
   const std::vector<TextLine> lines = logical_lines(text);

@@ -1,10 +1,8 @@
 #pragma once
 
 #include "patchlight/light/material.h"
+#include "patchlight/light/spectrum.h"
 #include "patchlight/scene/scene.h"
-
-#include "input/obj/mtl_mirror.h"
-#include "input/obj/mtl_pane.h"
 
 #include <optional>
 #include <span>
@@ -12,6 +10,53 @@
 #include <vector>
 
 namespace patchlight {
+
+/// What a material of an MTL file states of how it lets light through.
+struct MtlTransparency {
+  std::optional<double> dissolve;      ///< d: 1 is opaque
+  std::optional<double> transparency;  ///< Tr: 0 is opaque
+  std::optional<Spectrum> filter;      ///< Tf
+  std::optional<double> index;         ///< Ni
+  int illumination = 0;                ///< illum
+};
+
+/// The pane that it makes of the material.
+struct MtlPane {
+  Spectrum transmittance;
+  double index = 0;                       ///< of refraction
+  std::string statement;                  ///< "d 0.3"
+  std::optional<Spectrum> reflectance{};  ///< where it has holes: what is left of the material's
+};
+
+/// The pane that a material is; nothing where it is opaque. d counts before Tr, and Tf colours what they let through.
+/// Without both Tf alone counts with an illumination for glass, unless it is 1 in all bands, as programs write it for
+/// what is opaque.
+std::optional<MtlPane> mtl_pane(const MtlTransparency& stated);
+
+/// True when d and Tr contradict each other about whether the material is opaque: some programs mean opacity by Tr.
+bool is_contradictory(const MtlTransparency& stated);
+
+/// What a material of an MTL file states of how it reflects light.
+struct MtlReflection {
+  Spectrum diffuse;                  ///< Kd
+  std::optional<Spectrum> specular;  ///< Ks
+  std::optional<double> exponent;    ///< Ns
+  double roughness = 0;              ///< Pr
+  double metallic = 0;               ///< Pm
+  bool has_textures = false;         ///< of Ks, Ns, Pr or Pm
+  int illumination = 0;              ///< illum
+};
+
+/// The mirror that it makes of the material.
+struct MtlMirror {
+  Spectrum specular_reflectance;
+  Spectrum reflectance;   ///< what it reflects diffusely
+  std::string statement;  ///< "illum 3"
+};
+
+/// The mirror that a material is; nothing where it is matt or glossy. An illumination with reflection makes one of what
+/// has a Ks and is smooth. A metal reflects Kd, and nothing diffusely.
+std::optional<MtlMirror> mtl_mirror(const MtlReflection& stated);
 
 /// How a picture is put on: -s, -o and -clamp.
 struct TextureOptions {
