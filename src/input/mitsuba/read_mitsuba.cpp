@@ -94,7 +94,7 @@ FacetedShape cylinder_of(const MitsubaFile& file, const pugi::xml_node& shape) {
 
 // The kinds of shapes that can be read: obj, ply, rectangle, cube, sphere, disk and cylinder.
 bool is_mitsuba_shape(const std::string& kind) {
-  return std::find(kinds_of_shapes.begin(), kinds_of_kinds_of_shapes.end(), kind) != shapes.end();
+  return std::find(kinds_of_shapes.begin(), kinds_of_shapes.end(), kind) != kinds_of_shapes.end();
 }
 
 // The faces of a shape before its transformation. Nothing when the file of a mesh is not there. Throws InputError
