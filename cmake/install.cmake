@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, and the Debian packages that `cpack` makes: patchlight has the tool, libpatchlight-dev
-# the library, python3-patchlight the module for Python.
+# Installation, and the Debian packages that `cpack` makes: patchlight has the tool, libpatchlight-dev the library,
+# python3-patchlight the module for Python, patchlight-doc the pages of docs/.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -39,7 +39,7 @@ configure_package_config_file(cmake/patchlightConfig.cmake.in ${PROJECT_BINARY_D
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/patchlightConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/patchlightConfig.cmake ${PROJECT_BINARY_DIR}/patchlightConfigVersion.cmake
         DESTINATION ${patchlight_config_folder} COMPONENT library)
-foreach(package_of_component patchlight:tool libpatchlight-dev:library python3-patchlight:python)
+foreach(package_of_component patchlight:tool libpatchlight-dev:library patchlight-doc:doc python3-patchlight:python)
   string(REGEX MATCH "^(.*):(.*)$" both ${package_of_component})
   set(documents ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_1})
   if(CMAKE_MATCH_2 STREQUAL python AND NOT PATCHLIGHT_PYTHON)
@@ -48,6 +48,19 @@ foreach(package_of_component patchlight:tool libpatchlight-dev:library python3-p
   install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT ${CMAKE_MATCH_2})
   install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents} COMPONENT ${CMAKE_MATCH_2})
 endforeach()
+
+# The site if scripts/docs.sh has built it before CMake ran, else the pages in Markdown.
+set(patchlight_documents ${CMAKE_INSTALL_DATADIR}/doc/patchlight-doc)
+if(EXISTS ${PROJECT_BINARY_DIR}/docs/html/index.html)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/docs/html DESTINATION ${patchlight_documents} COMPONENT doc PATTERN .buildinfo EXCLUDE)
+  # Sphinx brings its scripts along.
+  file(WRITE ${PROJECT_BINARY_DIR}/doc.lintian-overrides "patchlight-doc: embedded-javascript-library\n")
+  install(FILES ${PROJECT_BINARY_DIR}/doc.lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
+          RENAME patchlight-doc COMPONENT doc)
+else()
+  install(DIRECTORY docs/ DESTINATION ${patchlight_documents}/markdown COMPONENT doc
+          FILES_MATCHING PATTERN *.md PATTERN *.ipynb PATTERN *.bib PATTERN *.png PATTERN *.svg)
+endif()
 
 if(PATCHLIGHT_PYTHON)
   set(patchlight_python_destination lib/python3/dist-packages/patchlight)
@@ -58,7 +71,7 @@ endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL tool library)
+set(CPACK_COMPONENTS_ALL tool library doc)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME patchlight)
@@ -76,6 +89,12 @@ set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and wh
 scenes, form factors, solvers, error bars and what is seen of a solution.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
     "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libstb-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+set(CPACK_DEBIAN_DOC_PACKAGE_NAME patchlight-doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOC_PACKAGE_RECOMMENDS "libjs-mathjax")  # typesets the formulas of the pages
+set(CPACK_DEBIAN_DOC_DESCRIPTION "The documentation: tutorials, guides, concepts, the reference of commands and
+formats, the theory, and measurements.")
 if(PATCHLIGHT_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-patchlight)

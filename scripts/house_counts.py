@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts by which the joints of the code are judged, for one checkout or several: the table of docs/architecture.md.
+"""Counts by which the joints of the code are judged, for one checkout or several.
 
 usage: scripts/house_counts.py [ROOT...]    default: this repository
 """

@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that patchlight is built and tested with, and web-ifc, which reads IFC files in Node.js,
-# into src/input/ifc/node_modules; does nothing when all are there.
-# usage: scripts/install_packages.sh
+# into src/input/ifc/node_modules; does nothing when all are there. `docs` adds the packages that build the site.
+# usage: scripts/install_packages.sh [docs]
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build ccache git
   libeigen3-dev libembree-dev libopenmesh-dev libgeos-dev libvtk9-dev libtbb-dev libboost-dev
   libtinyobjloader-dev libassimp-dev libtinygltf-dev libstb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libssl-dev zlib1g-dev libcairo2-dev libopenexr-dev libjs-three pkg-config
-  libgtest-dev libbenchmark-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
+  libgtest-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
 )
+
+docs=(python3-sphinx python3-myst-parser furo python3-sphinxcontrib.bibtex libjs-mathjax)
+[ "${1:-}" != docs ] || packages+=("${docs[@]}")
 
 # Node.js of any origin will do.
 command -v node >/dev/null || packages+=(nodejs)
@@ -22,7 +25,7 @@ install_debian() {
     command -v sudo >/dev/null || { echo "error: these packages are missing and there is no sudo: $*" >&2; exit 1; }
     as_root=(sudo)
   fi
-  echo "packages: installing $* (about 190 MB to download)"
+  echo "packages: installing $* (up to 190 MB to download)"
   "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
   echo "packages: done"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks the format of every C++ file and the module layers; with --tidy also runs clang-tidy, when it is installed, on all
+# Checks the format of every C++ file, the module layers and the prose; with --tidy also runs clang-tidy, when it is installed, on all
 # sources or on those that have changed since the commit BASE. All take about an hour of one processor.
 # usage: scripts/lint.sh [--tidy [BASE]]
 set -euo pipefail
@@ -9,6 +9,7 @@ mapfile -t files < <(git ls-files --cached --others --exclude-standard '*.h' '*.
 clang-format --dry-run --Werror "${files[@]}"
 echo "lint: ${#files[@]} files are formatted"
 python3 scripts/check_layers.py
+python3 scripts/check_prose.py
 
 if [ "${1:-}" = --tidy ]; then
   command -v clang-tidy >/dev/null || { echo "lint: clang-tidy is not installed; left out"; exit 0; }

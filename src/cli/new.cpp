@@ -5,8 +5,8 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/new_places.h"
-#include "output/whole_file.h"
-#include "output/write_bytes.h"
+#include "output/file/whole_file.h"
+#include "output/file/write_bytes.h"
 #include "plan/survey.h"
 
 #include <iostream>
@@ -29,7 +29,7 @@ ExitCode new_scene(const NewArguments& arguments) {
   const WritingGuard guard;
   write_bytes(arguments.output, text);
   std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
-            << " -o result.vtp --report result.json --picture result.png\n"
+            << " -o result.vtp --json result.json --picture result.png\n"
             << std::flush;
   return good;
 }

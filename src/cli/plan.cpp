@@ -9,8 +9,8 @@
 #include "cli/scene_warnings.h"
 #include "cli/summary.h"
 #include "mesh/nested_mesh.h"
-#include "output/whole_file.h"
-#include "output/write_plan.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_plan.h"
 #include "pipeline/expected_cost.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/second_mesh.h"
@@ -70,9 +70,10 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
          (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
          "pictures and pages, where they are asked for" +
-         (plan.accuracy.seconds ? "; --time is that of the meshes: it does not have what looks at the last one, as "
-                                  "sensors and pictures do"
-                                : "") +
+         (plan.accuracy.seconds
+              ? "; --time-limit is that of the meshes: it does not have what looks at the last one, as "
+                "sensors and pictures do"
+              : "") +
          "\n";
 }
 

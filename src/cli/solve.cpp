@@ -22,12 +22,12 @@
 #include "cli/solve_input.h"
 #include "cli/step_in_words.h"
 #include "cli/summary.h"
-#include "output/whole_file.h"
-#include "output/write_bytes.h"
-#include "output/write_lightmap.h"
-#include "output/write_points.h"
-#include "output/write_sensor_map.h"
-#include "output/write_series.h"
+#include "output/file/whole_file.h"
+#include "output/file/write_bytes.h"
+#include "output/image/write_lightmap.h"
+#include "output/plot/write_sensor_map.h"
+#include "output/vtk/write_points.h"
+#include "output/vtk/write_series.h"
 #include "page/write_page.h"
 #include "pipeline/stage_clock.h"
 #include "plan/check_request.h"
@@ -91,7 +91,7 @@ class Iterates {
     if (found == solutions_.rend() && is_solved_by_colours(simulation))
       throw InputError("--series",
                        "found clear faces or mirrors of several colours, whose light is solved colour by colour; a "
-                       "series needs one solution: leave it out, or give --skip colour");
+                       "series needs one solution: leave it out, or give --disable color");
     if (found == solutions_.rend()) throw Cancelled();
     return std::move(*found);
   }

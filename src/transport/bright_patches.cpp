@@ -10,7 +10,7 @@ namespace patchlight {
 namespace {
 
 // Rays towards bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
-// in the room with spheres of scripts/large_rooms.py. So many more rays over the hemisphere divide the variance by
+// in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance by
 // this.
 constexpr double least_gain = 1.75;
 

@@ -20,7 +20,7 @@
 #include "cli/arguments.h"
 #include "cli/solve_input.h"
 #include "files/sha256.h"
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 #include "pipeline/relative_errors.h"
 #include "plan/planned_scene.h"
 #include "verify/path_tracer.h"
@@ -452,9 +452,10 @@ std::string make_page(const std::string& table, const Options& options) {
          std::to_string(options.seed) + " --markdown FILE`" + (more.empty() ? "" : ", options" + more) +
          ".\n\n"
          "The program makes rooms at random and solves each with the default settings of `patchlight solve`. "
-         "It compares 15 sensors per room with the path tracer of `patchlight verify`: nine on a work plane, four near "
+         "It compares 15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four "
+         "near "
          "walls, one that faces a wall and one below the ceiling. Half of the rooms are rotated; a third is in "
-         "millimetres.\n\n" +
+         "millimeters.\n\n" +
          table +
          "\nHow to read the table:\n\n"
          "- *z* is the difference between solver and paths, divided by their combined standard error. Normal errors "

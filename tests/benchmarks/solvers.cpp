@@ -1,4 +1,6 @@
-// What every solver needs in the test room and in two rooms: the tables of docs/solvers.md, in Markdown.
+// Iterations, applications and time of every solver in the test room and in two rooms, as tables in Markdown for
+// docs/benchmarks/solvers.md.
+// usage: benchmark_solvers TWO_ROOMS.obj [small]
 #include "patchlight/input/read_scene.h"
 #include "patchlight/solve/solve.h"
 
@@ -141,8 +143,8 @@ void print_factors(Assembled test_room, Assembled two_rooms) {
   }
 }
 
-void print_tables(const std::string& two_rooms) {
-  Assembled room = assembled(test_room(0.5), test_room_edge);
+void print_tables(const std::string& two_rooms, bool small) {
+  Assembled room = assembled(test_room(0.5), small ? 4 * test_room_edge : test_room_edge);
   std::vector<std::string> names;
   std::vector<std::vector<std::string>> cells;
   for (const char* reflectance : {"0.5", "0.8", "0.95", "0.99", "0.999"}) {
@@ -150,6 +152,7 @@ void print_tables(const std::string& two_rooms) {
     std::printf("### Test room, reflectance %s\n\n", reflectance);
     names.push_back(std::string("*rho* ") + reflectance);
     cells.push_back(print_table(room));
+    if (small) return;
   }
   const Scene scene = read_scene({two_rooms});
   const double max_edge = max_edge_for(scene, kept_sides(scene, Sides::automatic), 2000);
@@ -165,10 +168,10 @@ void print_tables(const std::string& two_rooms) {
 }  // namespace patchlight
 
 int main(int count, char** arguments) {
-  if (count != 2) {
-    std::fprintf(stderr, "usage: benchmark_solvers TWO_ROOMS.obj\n");
+  if (count != 2 && count != 3) {
+    std::fprintf(stderr, "usage: benchmark_solvers TWO_ROOMS.obj [small]\n");
     return 1;
   }
-  patchlight::print_tables(arguments[1]);
+  patchlight::print_tables(arguments[1], count == 3);
   return 0;
 }

@@ -18,7 +18,7 @@ def output(*words, **options):
 
 def dependencies(deb):
     """The names of the packages needed; of alternatives the first."""
-    return [re.match(r"[^ (|]+", entry)[0] for entry in output("dpkg-deb", "-f", deb, "Depends").strip().split(", ")]
+    return [re.match(r"[^ (|]+", entry)[0] for entry in output("dpkg-deb", "-f", deb, "Depends").strip().split(", ") if entry]
 
 
 def installed(package):
@@ -43,7 +43,7 @@ def main(build, version, cmake, _compiler):
         folder = pathlib.Path(name)
         output(cpack, "--config", pathlib.Path(build) / "CPackConfig.cmake", "-B", folder)
         debs = {output("dpkg-deb", "-f", deb, "Package").strip(): deb for deb in folder.glob("*.deb")}
-        assert set(debs) - {"python3-patchlight"} == {"patchlight", "libpatchlight-dev"}, debs
+        assert set(debs) - {"python3-patchlight"} == {"patchlight", "libpatchlight-dev", "patchlight-doc"}, debs
         assert not faults(debs.values()), faults(debs.values())
         for deb in debs.values():
             assert output("dpkg-deb", "-f", deb, "Version").strip() == version
@@ -59,7 +59,7 @@ def main(build, version, cmake, _compiler):
         assert not any(package.endswith("-dev") for package in needed), needed
         wanted = set(re.findall(r"\bz?lib[a-z0-9+-]+-dev|nlohmann-json3-dev",
                                 (ROOT / "scripts" / "install_packages.sh").read_text()))
-        missing = wanted - {"libcli11-dev", "libgtest-dev", "libclang-rt-14-dev", "libbenchmark-dev"} - set(dependencies(debs["libpatchlight-dev"]))
+        missing = wanted - {"libcli11-dev", "libgtest-dev", "libclang-rt-14-dev"} - set(dependencies(debs["libpatchlight-dev"]))
         assert not missing, f"libpatchlight-dev does not depend on {missing}"
 
         usr = folder / "root" / "usr"
@@ -74,6 +74,8 @@ def main(build, version, cmake, _compiler):
                folder / "cube.glb")
         for file in ("share/man/man1/patchlight.1.gz", "share/doc/patchlight/changelog.gz", "share/doc/patchlight/copyright", "include/patchlight/simulate.h"):
             assert (usr / file).is_file(), file
+        pages = usr / "share" / "doc" / "patchlight-doc"
+        assert (pages / "html" / "index.html").is_file() or (pages / "markdown" / "index.md").is_file()
 
 
 main(*sys.argv[1:])

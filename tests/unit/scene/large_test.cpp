@@ -1,4 +1,4 @@
-// Geometry of many corners and faces, which goes by trees; tests/benchmarks/large.cpp has what it takes.
+// Geometry of many corners and faces, which goes by trees; tests/benchmarks/growth.py measures the time.
 #include "scene/coverings.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
