@@ -212,7 +212,7 @@ def main():
     write_hostile(folder)
     rooms = folder / "rooms.toml"
     rooms.unlink(missing_ok=True)
-    subprocess.run([tool, "new", ROOT / "meshes/two_rooms.obj", "-o", rooms], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([tool, "init", ROOT / "meshes/two_rooms.obj", "-o", rooms], check=True, stdout=subprocess.DEVNULL)
     solve(tool, folder, "cornell_box", ROOT / "meshes/cornell_box.obj")
     solve(tool, folder, "two_rooms", ROOT / "meshes/two_rooms.obj", "--patches", 3000)
     solve(tool, folder, "accuracy", ROOT / "meshes/cornell_box.obj", "--sides", "front", "--accuracy", "1%")

@@ -63,7 +63,7 @@ complete || install paraview || { update_lists && install paraview; } || give_up
 
 rm -rf "$out"
 mkdir -p "$out"
-build/src/patchlight solve meshes/cornell_box.obj --up y --quiet --patches 8000 --report "$out/cornell_box.json" \
+build/src/patchlight solve meshes/cornell_box.obj --up y --quiet --patches 8000 --json "$out/cornell_box.json" \
   -o "$out/cornell_box.vtp" -o "$out/cornell_box.ply" -o "$out/cornell_box.glb" --series "$out/cornell_box.pvd"
 # ParaView wants an X server, even for pictures that nobody sees. Another one that starts at the same moment can take its
 # number, and ParaView then aborts: that is tried again. The script's own verdict of faults is exit code 1.

@@ -8,5 +8,5 @@ echo "demo: packages, build, then the Cornell box; the first run takes some minu
 scripts/install_packages.sh
 cmake --preset release >/dev/null
 cmake --build build -j "$(nproc)" --target patchlight_tool
-build/src/patchlight solve meshes/cornell_box.obj -o build/cornell_box.vtp --html build/cornell_box.html --picture build/cornell_box.png --quality final
+build/src/patchlight solve meshes/cornell_box.obj -o build/cornell_box.vtp --html build/cornell_box.html --picture build/cornell_box.png --picture-quality final
 echo "demo: open build/cornell_box.html in a browser, build/cornell_box.png, or build/cornell_box.vtp in ParaView"

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Kills runs that write five files and a series at random moments, and looks at what is left.
 
-usage: scripts/kill_moments.py TOOL [--moments N] [--seconds S] [--seed N]
+usage: scripts/kill_moments.py TOOL [--signal KILL|TERM|INT|HUP] [--moments N] [--seconds S] [--seed N]
 
-After each kill every file must be the older one or the whole new one; so must the series, whose .pvd names files that are
+After each KILL every file must be the older one or the whole new one; so must the series, whose .pvd names files that are
 there. All must be of one run, or the kill fell between the first and the last of the renames, which is counted: then the
-new ones are those that are renamed first. After one more run no temporary file is left.
+new ones are those that are renamed first. The other signals stop a run at the next step: it returns 128 plus the number of
+the signal, or 0 if it has ended before; all files are whole, and views that were not ready are the older ones. After one more run no temporary file is left.
 """
 import argparse
 import json
@@ -31,7 +32,7 @@ LAMPS = {1: "3,2,1", 2: "1,2,3"}
 
 def words(tool, lamp):
     return [tool, "solve", "room.obj", "-q", "--patches", "100", "--set", f"lamp.exitance={LAMPS[lamp]}", "-o", "out.vtp", "-o",
-            "out.ply", "--picture", "out.png", "--points", "spots.pts", "--points-output", "spots.csv", "--report",
+            "out.ply", "--picture", "out.png", "--points", "spots.pts", "--points-output", "spots.csv", "--json",
             "out.json", "--series", "out.pvd"]
 
 
@@ -56,15 +57,25 @@ def state(folder):
     return {name: ((folder / name).stat().st_ino, (folder / name).read_bytes()) for name in FILES}
 
 
-def renamed(folder, before, whole):
-    """Which files are those of the run that was killed. Fails when one is neither its nor the older one."""
+def is_whole(name, data):
+    """True if the file has its end."""
+    if name.endswith(".json"):
+        return isinstance(json.loads(data), dict)
+    ends = {".vtp": b"</VTKFile>", ".pvd": b"</VTKFile>", ".png": b"IEND\xaeB`\x82", ".ply": b"", ".csv": b"\n"}
+    return data.rstrip(b"\n" if name.endswith((".vtp", ".pvd")) else b"").endswith(ends[pathlib.Path(name).suffix])
+
+
+def renamed(folder, before, whole, is_soft):
+    """Which files are those of the run that was stopped. Fails when one is neither its nor the older one. A run that was
+    stopped softly has solutions of its own, which are whole."""
     check_series(folder)
     found = []
     for name, now in state(folder).items():
         found.append(now[0] != before[name][0])
-        if fact(folder, name) != whole[name] if found[-1] else now != before[name]:
+        is_new = is_whole(name, now[1]) if is_soft else fact(folder, name) == whole[name]
+        if not is_new if found[-1] else now != before[name]:
             raise AssertionError(f"{name} is neither the older one nor the new one")
-    if sorted(found, reverse=True) != found:
+    if not is_soft and sorted(found, reverse=True) != found:
         raise AssertionError(f"not in the order of the renames: {dict(zip(FILES, found))}")
     return found
 
@@ -78,11 +89,14 @@ def wait_for_writing(process, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tool", type=os.path.abspath)
+    parser.add_argument("--signal", choices=("KILL", "TERM", "INT", "HUP"), default="KILL")
     parser.add_argument("--moments", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=float("inf"), help="no further kill after so long")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     chance = random.Random(options.seed)
+    sent = signal.Signals[f"SIG{options.signal}"]
+    stopped = -sent if sent == signal.SIGKILL else 128 + sent
     counts = {"old": 0, "new": 0, "between": 0}
     faults = []
     with tempfile.TemporaryDirectory(prefix="patchlight-kill-") as place:
@@ -112,13 +126,17 @@ def main():
             else:
                 wait_for_writing(process, folder)
                 time.sleep(chance.uniform(0, 1.2 * writing))
-            process.kill()
-            if process.wait() != -signal.SIGKILL:
+            process.send_signal(sent)
+            code = process.wait()
+            if code not in (0, stopped):
+                faults.append(f"moment {killed + 1}: exit code {code}")
+                break
+            if code != stopped:
                 ended, now = ended + 1, wanted  # faster than was thought
                 continue
             killed += 1
             try:
-                found = renamed(folder, before, whole[wanted])
+                found = renamed(folder, before, whole[wanted], sent != signal.SIGKILL)
             except AssertionError as error:
                 faults.append(f"moment {killed}: {error}")
                 break

@@ -129,7 +129,7 @@ def npy_folder(tool, folder):
     with tempfile.TemporaryDirectory() as place:
         for name, text in (("room.obj", ROOM), ("room.mtl", MATERIALS)):
             (pathlib.Path(place) / name).write_text(text)
-        words = [tool, "form-factors", "room.obj", "--patches", "40", "--raw", "-q", "-o", "F"]
+        words = [tool, "form-factors", "room.obj", "--patches", "40", "--no-closure", "-q", "-o", "F"]
         subprocess.run(words, cwd=place, check=True, capture_output=True)
         shutil.copytree(pathlib.Path(place) / "F", folder)
 

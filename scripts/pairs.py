@@ -2,7 +2,7 @@
 """Two builds of the tool side by side: CPU seconds of the Cornell box and the two rooms, in interleaved pairs.
 
 usage: scripts/pairs.py OLD NEW [PAIRS] [-- OPTION ...]    OLD and NEW are tools; the options go to NEW alone, as
---no-contact-lines --keep-faces where OLD has neither. Default: 12 pairs.
+--no-contact-lines --no-merge where OLD has neither. Default: 12 pairs.
 """
 import pathlib
 import resource

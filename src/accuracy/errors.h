@@ -36,8 +36,8 @@ Field mean_square(std::span<const Field> draws);
 
 /// Equally likely errors of the irradiance by sampled form factors, of the light `B`, radiosity in W/m^2. Each draws
 /// errors of the entries (random_errors()) and follows them: e = A^-1 D B + F R e. In a closed scene the draws are
-/// closed as the matrix was, so that rows keep their sums. docs/accuracy.md. Costs some tens of applications. `raw` has
-/// the errors of the entries.
+/// closed as the matrix was, so that rows keep their sums. docs/theory/error-estimation.md. Costs some tens of
+/// applications. `raw` has the errors of the entries.
 std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                                            const SolvedProblem& solved, const FieldView& B);
 
@@ -65,7 +65,8 @@ Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const S
                   const FieldView& radiosity_of_parents);
 
 /// The order of the mean irradiance in the size of the patches that mesh_errors() takes. Measured ones are 1.5 to 2
-/// where there are no shadow edges, docs/accuracy.md; with 1.2 bars in rooms with furniture cover what they should.
+/// where there are no shadow edges, docs/theory/edges-and-contacts.md; with 1.2 bars in rooms with furniture cover what
+/// they should.
 inline constexpr double mesh_order = 1.2;
 
 /// What the errors of light straight from the lamps, known from a single difference, are multiplied with, so that bars

@@ -33,7 +33,8 @@ void write_matrix(const std::filesystem::path& file, const Exchange& exchange, M
 
 /// Writes a folder, whole or not at all: F.npy or F.mtx, area.npy, lost_share.npy, raw_row_sum.npy, mesh.vtp,
 /// scene.json, info.json, standard_error.npy or .mtx where Exchange::entry_errors were kept, and the tables
-/// by_material.csv and by_object.csv if there are any. docs/output.md describes them. \throws OutputError, Cancelled.
+/// by_material.csv and by_object.csv if there are any. docs/reference/outputs/form-factor-folder.md describes them.
+/// \throws OutputError, Cancelled.
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result,
                         const Observer& observer = {});
 

@@ -1,9 +1,9 @@
 #include "archive/scene_file.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/light/spectrum.h"
 #include "patchlight/output/provenance.h"
 
-#include "archive/bands_json.h"
 #include "archive/file_names.h"
 #include "archive/json_values.h"
 #include "archive/lights_json.h"
@@ -24,6 +24,27 @@
 
 namespace patchlight {
 namespace {
+
+// The bands of a scene, one entry per band.
+nlohmann::ordered_json json_of_bands(const Bands& bands) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Band& band : bands)
+    list.push_back({{"name", band.name},
+                    {"luminous_weight", band.luminous_weight},
+                    {"rgb", band.rgb},
+                    {"edges_nm", band.edges_nm}});
+  return list;
+}
+
+// The same back. Throws what nlohmann::json throws where a part is missing or of another shape.
+Bands bands_from(const nlohmann::ordered_json& json) {
+  Bands bands;
+  for (const auto& entry : json) {
+    bands.push_back({entry.at("name").get<std::string>(), entry.at("luminous_weight").get<double>(),
+                     entry.at("rgb").get<std::array<double, 3>>(), entry.value("edges_nm", std::array<double, 2>{})});
+  }
+  return bands;
+}
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -257,7 +278,7 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["notes"] = json_of(notes);
   json["problems"] = problems_part(scene);
   json["materials"] = materials_part(scene);
-  if (!scene.bands.empty()) json["bands"] = json_of(scene.bands);
+  if (!scene.bands.empty()) json["bands"] = json_of_bands(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);
   json["lights"] = lights_part(scene);
   json["views"] = views_part(scene);

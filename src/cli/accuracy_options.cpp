@@ -16,13 +16,13 @@ void add_refinement_options(CLI::App& command, Request& request) {
       "pays until the error\nbars are below; begins with --patches, here " +
           std::to_string(first_patches) + " unless given, and\n--samples; default: one mesh",
       [&request](const std::string& text) { request.accuracy.relative_error = relative_error("--accuracy", text); });
-  add(command, "--time", "TIME",
+  add(command, "--time-limit", "TIME",
       "refines for about so long, e.g. 30s or 2min, or less when\n--accuracy is reached; sensors and pictures come on "
       "top; default:\nno limit",
-      [&request](const std::string& text) { request.accuracy.seconds = seconds("--time", text); });
+      [&request](const std::string& text) { request.accuracy.seconds = seconds("--time-limit", text); });
   command
       .add_option(
-          "--interest", request.accuracy.interest,
+          "--focus", request.accuracy.interest,
           "material, object, group or room, or a side of one, e.g. room.inside:\nthe error is that of its patches, and "
           "refinement serves them; may be\nrepeated; default: by daylight .inside, all that is enclosed, else all")
       ->allow_extra_args(false)
@@ -30,11 +30,11 @@ void add_refinement_options(CLI::App& command, Request& request) {
   request.accuracy.local_cuts = true;
   command
       .add_flag_callback(
-          "--keep-mesh", [&request] { request.accuracy.local_cuts = false; },
+          "--no-refine", [&request] { request.accuracy.local_cuts = false; },
           "stays with the first mesh; default: by rows of rays patches are cut,\nand take more rays, where they err "
           "most, if that takes away a third\nof an error above 2 %")
       ->excludes(command.get_option("--accuracy"))
-      ->excludes(command.get_option("--time"))
+      ->excludes(command.get_option("--time-limit"))
       ->option_text(" ");
 }
 

@@ -8,7 +8,7 @@
 
 namespace patchlight::cli {
 
-/// Adds --accuracy, --time and --interest. What is parsed lands in `request`, which must outlive the command.
+/// Adds --accuracy, --time-limit and --focus. What is parsed lands in `request`, which must outlive the command.
 void add_refinement_options(CLI::App& command, Request& request);
 
 /// The same, --error-bars and --no-error-bars; without either of these there are cheap ones.

@@ -9,6 +9,7 @@
 #include "cli/check_options.h"
 #include "cli/compare_options.h"
 #include "cli/form_factor_options.h"
+#include "cli/former_names.h"
 #include "cli/new_options.h"
 #include "cli/plan_options.h"
 #include "cli/relight_options.h"
@@ -68,9 +69,9 @@ void require_nothing_left(const CLI::App& command, const std::string& name, std:
 }
 
 // The command line as one would type it again.
-std::string joined(int count, const char* const* values) {
+std::string joined(const std::vector<std::string>& words) {
   std::string line = "patchlight";
-  for (int k = 1; k < count; ++k) line += ' ' + shell_word(values[k]);
+  for (std::size_t k = 1; k < words.size(); ++k) line += ' ' + shell_word(words[k]);
   return line;
 }
 
@@ -136,6 +137,7 @@ void add_information(CLI::App& tool) {
 }  // namespace
 
 Arguments parse_arguments(int count, const char* const* values) {
+  const std::vector<std::string> words = with_present_names(count, values).words;
   CLI::App tool("patchlight: diffuse interreflection of light by finite-element radiosity", "patchlight");
   add_information(tool);
   const std::shared_ptr<SolveOptions> solve_options = add_solve(tool);
@@ -155,44 +157,46 @@ Arguments parse_arguments(int count, const char* const* values) {
     command->allow_extras();
   }
 
+  std::vector<const char*> c_strings;
+  for (const std::string& word : words) c_strings.push_back(word.c_str());
   // The parsing library speaks through its own exceptions; they end here.
   try {
-    tool.parse(count, values);
+    tool.parse(static_cast<int>(c_strings.size()), c_strings.data());
     require_one_command(tool);
     const CLI::App& command = *tool.get_subcommands().front();
     require_nothing_left(command, command.get_name(), tool.remaining(true));
     if (command.get_name() == "check") return finish_check(*check_options);
-    if (command.get_name() == "new") return finish_new(*new_options);
+    if (command.get_name() == "init") return finish_new(*new_options);
     if (command.get_name() == "plan") return finish_plan(*plan_options);
     if (command.get_name() == "render") {
       RenderArguments arguments = finish_render(*render_options);
-      arguments.command_line = joined(count, values);
+      arguments.command_line = joined(words);
       return arguments;
     }
-    if (command.get_name() == "validate") return finish_validate(*validate_options);
+    if (command.get_name() == "selftest") return finish_validate(*validate_options);
     if (command.get_name() == "form-factors") {
       FormFactorArguments arguments = finish_form_factors(*form_factor_options);
-      arguments.command_line = joined(count, values);
+      arguments.command_line = joined(words);
       return arguments;
     }
-    if (command.get_name() == "compare") {
+    if (command.get_name() == "compare-solvers") {
       CompareArguments arguments = finish_compare(*compare_options);
-      arguments.command_line = joined(count, values);
+      arguments.command_line = joined(words);
       return arguments;
     }
-    if (command.get_name() == "study") {
+    if (command.get_name() == "convergence") {
       StudyArguments arguments = finish_study(*study_options);
-      arguments.command_line = joined(count, values);
+      arguments.command_line = joined(words);
       return arguments;
     }
-    if (command.get_name() == "verify") {
+    if (command.get_name() == "crosscheck") {
       VerifyArguments arguments = finish_verify(*verify_options);
-      arguments.command_line = joined(count, values);
+      arguments.command_line = joined(words);
       return arguments;
     }
     const bool again = command.get_name() == "relight";
     SolveArguments arguments = again ? finish_relight(*relight_options) : finish_solve(*solve_options);
-    arguments.command_line = joined(count, values);
+    arguments.command_line = joined(words);
     return arguments;
   } catch (const CLI::CallForHelp&) {
     return Information{tool.help()};

@@ -98,7 +98,7 @@ struct CheckArguments {
   bool all = false;                        ///< lists everything, not what fits on a screen
 };
 
-/// What `patchlight new` is asked to do.
+/// What `patchlight init` is asked to do.
 struct NewArguments {
   std::vector<std::filesystem::path> models;
   ReadOptions read;
@@ -117,7 +117,7 @@ struct FormFactorArguments {
   std::string command_line;  ///< for the record
 };
 
-/// What `patchlight compare` is asked to do.
+/// What `patchlight compare-solvers` is asked to do.
 struct CompareArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
@@ -129,7 +129,7 @@ struct CompareArguments {
   std::string command_line;  ///< for the record
 };
 
-/// What `patchlight study` is asked to do.
+/// What `patchlight convergence` is asked to do.
 struct StudyArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
@@ -141,7 +141,7 @@ struct StudyArguments {
   std::string command_line;  ///< for the record
 };
 
-/// What `patchlight verify` is asked to do.
+/// What `patchlight crosscheck` is asked to do.
 struct VerifyArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
@@ -153,7 +153,7 @@ struct VerifyArguments {
   std::string command_line;  ///< for the record
 };
 
-/// What `patchlight validate` is asked to do.
+/// What `patchlight selftest` is asked to do.
 struct ValidateArguments {
   std::filesystem::path json;   ///< .json; empty when it is not wanted
   bool json_on_stdout = false;  ///< instead of the table

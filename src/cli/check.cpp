@@ -127,7 +127,7 @@ std::string material_lines(const SceneReport& report, bool all) {
   return text.str() + rest_line(report.materials.size(), materials.size());
 }
 
-// The largest objects or groups first, which --only and --leave-out take. Of IFC, classes with a pattern for each.
+// The largest objects or groups first, which --only and --exclude take. Of IFC, classes with a pattern for each.
 std::string object_lines(const SceneReport& report, bool all) {
   const std::vector<ObjectFacts>& objects = all ? report.objects : report.classes;
   if (objects.size() < 2) return {};
@@ -234,7 +234,7 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   const std::string result = arguments.models.front().stem().string();
   const std::string setting = report.first_light ? report.first_light->setting : "";
   const std::string command = needs_sensors || (report.first_light && setting.empty())
-                                  ? "new" + models + " -o " + shell_word(result + ".toml")
+                                  ? "init" + models + " -o " + shell_word(result + ".toml")
                                   : "solve" + models +
                                         (setting.empty() ? "" : " " + shown_name(with_option_names(setting))) + " -o " +
                                         shell_word(result + ".vtp") + " --picture " + shell_word(result + ".png");
@@ -257,8 +257,9 @@ ExitCode check(const CheckArguments& arguments) {
     if (!file->empty()) check_writable(*file);
   }
   const Scene scene = read_scene(arguments.models, arguments.read);
-  require_not_read({{"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture.file}},
-                   scene.inputs);
+  require_not_read(
+      {{"--json", arguments.json}, {"--problems", arguments.problems}, {"--picture", arguments.picture.file}},
+      scene.inputs);
   SceneReport report = survey(scene);
   if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
 

@@ -59,7 +59,7 @@ std::shared_ptr<CheckOptions> add_check(CLI::App& tool) {
       ->option_text("[FILE]");
   command
       .add_option_function<std::string>(
-          "--vtk", [&to](const std::string& text) { to.problems = text; },
+          "--problems", [&to](const std::string& text) { to.problems = text; },
           "the model with its bad faces marked, for ParaView (.vtp):\ncell array problem_kind")
       ->option_text("FILE");
   add(command, "--picture", "FILE",
@@ -84,7 +84,7 @@ CheckArguments finish_check(const CheckOptions& options) {
   arguments.problems = options.problems;
   if (arguments.models.empty()) throw UsageError("check: found no model; expected: patchlight check MODEL");
   if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp") {
-    throw UsageError("--vtk: found '" + options.problems + "'; expected a name that ends in .vtp");
+    throw UsageError("--problems: found '" + options.problems + "'; expected a name that ends in .vtp");
   }
   const std::string& picture = options.picture.file;
   if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".hdr"))
@@ -94,7 +94,7 @@ CheckArguments finish_check(const CheckOptions& options) {
   arguments.ambient_distance = options.ambient_distance;
   if (options.ambient_distance && picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
   const std::vector<OutputFile> outputs = {
-      {"--json", arguments.json}, {"--vtk", arguments.problems}, {"--picture", arguments.picture.file}};
+      {"--json", arguments.json}, {"--problems", arguments.problems}, {"--picture", arguments.picture.file}};
   require_distinct(outputs);
   require_not_read(outputs, arguments.models);
   return arguments;

@@ -5,7 +5,7 @@
 
 namespace patchlight::cli {
 
-/// Carries out `patchlight compare`. \throws InputError, OutputError, MemoryError, Cancelled.
+/// Carries out `patchlight compare-solvers`. \throws InputError, OutputError, MemoryError, Cancelled.
 ExitCode compare(const CompareArguments& arguments);
 
 }  // namespace patchlight::cli

@@ -71,7 +71,8 @@ void add_compare_options(CLI::App& command, CompareCommandOptions& options) {
 std::shared_ptr<CompareCommandOptions> add_compare(CLI::App& tool) {
   auto options = std::make_shared<CompareCommandOptions>();
   CompareCommandOptions& to = *options;
-  CLI::App& command = *tool.add_subcommand("compare", "solves a model with every solver: which converges how fast");
+  CLI::App& command =
+      *tool.add_subcommand("compare-solvers", "solves a model with every solver: which converges how fast");
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
   add_effect_options(command, to.request, effects_but({Effect::interreflection}));
@@ -95,9 +96,9 @@ CompareArguments finish_compare(const CompareCommandOptions& options) {
   arguments.page = options.page;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {
-    throw UsageError("compare: found no model; expected: patchlight compare MODEL -o FOLDER");
+    throw UsageError("compare-solvers: found no model; expected: patchlight compare-solvers MODEL -o FOLDER");
   }
-  if (arguments.output.empty()) throw UsageError("compare: nothing would be written; give -o FOLDER");
+  if (arguments.output.empty()) throw UsageError("compare-solvers: nothing would be written; give -o FOLDER");
   require_page_elsewhere(arguments.page, arguments.output);
   require_not_read({{"--html", arguments.page}}, arguments.models);
   check(arguments.request, arguments.options);

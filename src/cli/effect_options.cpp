@@ -22,7 +22,7 @@ Effect effect_named(const std::string& option, const std::string& text, const st
   return choice<Effect>(option, text, allowed);
 }
 
-// What --force and --skip have in common.
+// What --enable and --disable have in common.
 struct EffectList {
   const std::vector<Effect>& allowed;
   std::vector<Effect>& chosen;
@@ -44,17 +44,17 @@ void add_effects(CLI::App& command, const std::string& option, const std::string
 
 std::vector<Effect> effects_but(const std::vector<Effect>& without) {
   std::vector<Effect> effects = simulated_effects();
-  std::erase_if(effects, [&](Effect effect) { return contains(without, effect); });
+  std::erase_if(effects, [&](Effect effect) { return effect == Effect::closure || contains(without, effect); });
   return effects;
 }
 
 void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects) {
   command.option_defaults()->group("Effects");
-  add_effects(command, "--force",
+  add_effects(command, "--enable",
               "simulates an effect even where the scene does not call for it:\n" + names(effects, ", ") +
                   ";\nmay be repeated; default: as the scene calls for",
               {effects, request.effects.force});
-  add_effects(command, "--skip",
+  add_effects(command, "--disable",
               "leaves an effect out that the scene calls for; the same words; may be\nrepeated; default: none",
               {effects, request.effects.skip});
 }

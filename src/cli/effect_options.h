@@ -8,10 +8,10 @@
 
 namespace patchlight::cli {
 
-/// Adds --force and --skip for these effects. What is parsed lands in `request`, which must outlive the command.
-void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects = simulated_effects());
-
-/// All effects that a command may be asked for but these.
+/// All effects that a command can enable or disable but these. Closure has an option of its own, --no-closure.
 std::vector<Effect> effects_but(const std::vector<Effect>& without);
+
+/// Adds --enable and --disable for these effects. What is parsed lands in `request`, which must outlive the command.
+void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects);
 
 }  // namespace patchlight::cli

@@ -4,11 +4,10 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
-#include "cli/option_names.h"
 #include "cli/parse_value.h"
 #include "cli/storage_option.h"
+#include "plan/check_request.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,6 @@ struct FormFactorOptions {
   std::string output;
   std::optional<MatrixFormat> format;
   std::optional<GroupBy> by;
-  bool raw = false;
   bool quiet = false;
 };
 
@@ -57,7 +55,7 @@ void require_pairs(const FormFactorOptions& options) {
                                                                           : nullptr;
   if (wanted == nullptr) return;
   throw UsageError(std::string(wanted) +
-                   ": found with --storage rays; it needs --storage tiles, the form factors of all pairs");
+                   ": found with --method rays; it needs --method pairs, the form factors of all pairs");
 }
 
 }  // namespace
@@ -68,7 +66,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("form-factors", "computes the form factors between the patches of a model");
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
-  add_effect_options(command, to.request, {Effect::reach, Effect::backs, Effect::closure});
+  add_effect_options(command, to.request, {Effect::reach, Effect::backs});
   command.option_defaults()->group("Results");
   command
       .add_option(
@@ -95,7 +93,7 @@ std::shared_ptr<FormFactorOptions> add_form_factors(CLI::App& tool) {
       ->option_text("material|object");
   command.option_defaults()->group("Form factors and equations");
   add_without(command, to.request.assembly.short_cuts);
-  command.add_flag("--raw", to.raw, "as computed, before closure; default: rows closed");
+  add_closure_option(command, to.request);
   add_patch_options(command, to.request);
   add_graded_option(command, to.request);
   add_stored_options(command, to.request);
@@ -112,10 +110,9 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
   arguments.output = options.output;
   arguments.format = options.format.value_or(MatrixFormat::npy);
-  arguments.request.assembly.close = !options.raw;
   require_pairs(options);
   if (is_by_rays(options)) arguments.request.solver.solver = Solver::gmres;
-  check_with_names(arguments.request, std::array{OptionName{"assembly.close=false", "--raw"}});
+  check(arguments.request);
   arguments.by = options.by;
   arguments.quiet = options.quiet;
   if (arguments.models.empty()) {

@@ -5,6 +5,7 @@
 #include "cli/compare.h"
 #include "cli/exit_code.h"
 #include "cli/form_factors.h"
+#include "cli/former_names.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/new.h"
@@ -16,6 +17,7 @@
 #include "cli/validate.h"
 #include "cli/verify.h"
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -30,7 +32,16 @@ namespace {
 using namespace patchlight;
 using namespace patchlight::cli;
 
+// Names of earlier versions still work; a remark shows the present ones.
+void remark_on_former_names(int count, const char* const* values) {
+  const PresentNames names = with_present_names(count, values);
+  const auto is_quiet = [](const std::string& word) { return word == "-q" || word == "--quiet"; };
+  if (std::any_of(names.words.begin(), names.words.end(), is_quiet)) return;
+  for (const std::string& remark : names.remarks) print_message("note", remark);
+}
+
 ExitCode run(int count, const char* const* values) {
+  remark_on_former_names(count, values);
   const Arguments arguments = parse_arguments(count, values);
   if (const auto* information = std::get_if<Information>(&arguments)) {
     std::cout << information->text;

@@ -29,16 +29,16 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
       ->allow_extra_args(false)
       ->option_text("NAME");
   command
-      .add_option("--leave-out", options.leave_out,
+      .add_option("--exclude", options.leave_out,
                   "faces of objects, groups or materials of this name do not take\npart; may be repeated; default: all "
                   "do")
       ->allow_extra_args(false)
       ->option_text("NAME");
-  add(command, "--detail", "LENGTH",
+  add(command, "--simplify", "LENGTH",
       "bodies that are smaller, as 5cm, are left out, and those that\ndiffer by less from a box become boxes; a note "
       "tells "
       "what went;\ndefault: all stay",
-      [&options](const std::string& text) { options.detail = length("--detail", text); });
+      [&options](const std::string& text) { options.detail = length("--simplify", text); });
   add(command, "--maintenance-factor", "NUMBER",
       "the share of their light when new that lamps and luminaires give,\nas 0.8 or 80%; daylight is not changed; "
       "default: what the scene\nfile says, else 1",
@@ -58,7 +58,7 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
         options.color_error =
             number("--color-error", text, "a colour difference above 0", [](double value) { return value > 0; });
       });
-  command.add_flag("--keep-faces", options.keep_faces,
+  command.add_flag("--no-merge", options.keep_faces,
                    "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
                    "and share edges become one");
 }

@@ -31,7 +31,7 @@ struct ModelOptions {
 /// it.
 void add_file_options(CLI::App& command, ModelOptions& options);
 
-/// Adds MODEL, --format, --unit, --set, --only, --leave-out, --up, --confine and the daylight to a command. What is
+/// Adds MODEL, --format, --unit, --set, --only, --exclude, --up, --confine and the daylight to a command. What is
 /// parsed lands in `options`, which must outlive it.
 void add_model_options(CLI::App& command, ModelOptions& options);
 

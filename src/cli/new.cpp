@@ -29,7 +29,7 @@ ExitCode new_scene(const NewArguments& arguments) {
   const WritingGuard guard;
   write_bytes(arguments.output, text);
   std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
-            << " -o result.vtp --report result.json --picture result.png\n"
+            << " -o result.vtp --json result.json --picture result.png\n"
             << std::flush;
   return good;
 }

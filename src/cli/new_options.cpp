@@ -16,7 +16,7 @@ std::shared_ptr<NewOptions> add_new(CLI::App& tool) {
   auto options = std::make_shared<NewOptions>();
   NewOptions& to = *options;
   CLI::App& command = *tool.add_subcommand(
-      "new", "writes a commented scene file for a model: sky, glass, sensors in its rooms, views from inside");
+      "init", "writes a commented scene file for a model: sky, glass, sensors in its rooms, views from inside");
   add_file_options(command, to.model);
   command.option_defaults()->group("Results");
   add(command, "-o,--output", "SCENE.toml", "the scene file, which must not be there yet",
@@ -29,15 +29,15 @@ std::shared_ptr<NewOptions> add_new(CLI::App& tool) {
 
 NewArguments finish_new(const NewOptions& options) {
   if (options.model.models.empty() || options.output.empty())
-    throw UsageError(std::string("new: found no ") + (options.model.models.empty() ? "model" : "-o SCENE.toml") +
-                     "; expected: patchlight new MODEL -o SCENE.toml");
+    throw UsageError(std::string("init: found no ") + (options.model.models.empty() ? "model" : "-o SCENE.toml") +
+                     "; expected: patchlight init MODEL -o SCENE.toml");
   NewArguments arguments;
   arguments.models = model_files(options.model);
   arguments.read = read_options(options.model);
   arguments.output = options.output;
   for (const std::filesystem::path& model : arguments.models) {
     if (model == "-" || model.extension() == ".toml")
-      throw UsageError("new: found '" + model.string() + "'; expected model files, which a scene file can name");
+      throw UsageError("init: found '" + model.string() + "'; expected model files, which a scene file can name");
   }
   require_not_read({{"-o", arguments.output}}, arguments.models);
   return arguments;

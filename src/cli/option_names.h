@@ -13,8 +13,8 @@ struct OptionName {
   std::string option;
 };
 
-/// A message of the library with the options in place of its fields: "--skip sun" for "effects.skip=sun". `other` goes
-/// before what options are called with most commands.
+/// A message of the library with the options in place of its fields: "--disable sun" for "effects.skip=sun". `other`
+/// goes before what options are called with most commands.
 std::string with_option_names(const std::string& text, std::span<const OptionName> other = {});
 
 /// check() for a command that calls some options otherwise. \throws UsageError.

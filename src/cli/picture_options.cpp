@@ -80,7 +80,7 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
   const char* const needs = given.camera && picture_alone           ? "--camera"
                             : !given.views.empty() && picture_alone ? "--view"
                             : given.colors                          ? "--false-color"
-                            : given.quality                         ? "--quality"
+                            : given.quality                         ? "--picture-quality"
                             : given.size                            ? "--size"
                             : given.error                           ? "--picture-error"
                             : given.most_samples                    ? "--picture-samples"
@@ -118,11 +118,11 @@ void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality 
         given.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
       });
   add_view_options(command, given);
-  add(command, "--quality", "draft|final",
+  add(command, "--picture-quality", "draft|final",
       std::string("picture of the smoothed solution, or of light that is gathered\nat each of its points; default ") +
           (usual == PictureQuality::draft ? "draft" : "final"),
       [&given](const std::string& text) {
-        given.quality = choice<PictureQuality>("--quality", text,
+        given.quality = choice<PictureQuality>("--picture-quality", text,
                                                {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
       });
   add(command, "--picture-error", "NUMBER",
@@ -167,7 +167,7 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
     throw UsageError(std::string(given.error          ? "--picture-error"
                                  : given.most_samples ? "--picture-samples"
                                                       : "--picture-error-map") +
-                     " is of final pictures; give --quality final");
+                     " is of final pictures; give --picture-quality final");
   if (given.colors && settings.file.extension() != ".png")
     throw UsageError("--false-color is of pictures in PNG; found '" + given.file +
                      "', which has luminances themselves");

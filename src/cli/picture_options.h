@@ -31,7 +31,8 @@ struct PictureGiven {
   bool for_observers = false;  ///< where the eye is, is asked for without a picture too
 };
 
-/// Adds --false-color, --camera, --projection, --view, --quality, --size, --picture-error, --picture-samples and
+/// Adds --false-color, --camera, --projection, --view, --picture-quality, --size, --picture-error, --picture-samples
+/// and
 /// --picture-error-map.
 /// What is parsed lands in `given`, which must outlive the command.
 void add_picture_options(CLI::App& command, PictureGiven& given, PictureQuality usual);

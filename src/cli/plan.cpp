@@ -70,9 +70,10 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
   return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
          (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
          "pictures and pages, where they are asked for" +
-         (plan.accuracy.seconds ? "; --time is that of the meshes: it does not have what looks at the last one, as "
-                                  "sensors and pictures do"
-                                : "") +
+         (plan.accuracy.seconds
+              ? "; --time-limit is that of the meshes: it does not have what looks at the last one, as "
+                "sensors and pictures do"
+              : "") +
          "\n";
 }
 

@@ -37,7 +37,8 @@ std::shared_ptr<PlanOptions> add_plan(CLI::App& tool) {
   add_graded_option(command, to.request);
   add_accuracy_options(command, to.request);
   add_storage_options(command, to.request);
-  add_effect_options(command, to.request);
+  add_closure_option(command, to.request);
+  add_effect_options(command, to.request, effects_but({}));
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);
   return options;

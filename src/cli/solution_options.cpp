@@ -70,7 +70,7 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
       options.points_outputs.empty()) {
     throw UsageError(command +
                      ": nothing would be written; give at least one of -o, --html, --series, --picture, "
-                     "--lightmap, --report, --points");
+                     "--lightmap, --json, --points");
   }
   if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
@@ -147,7 +147,7 @@ void add_output_options(CLI::App& command, SolutionOptions& options) {
   add_file(command, "--series", options.series,
            "the iterations one by one for ParaView (.pvd); with the Jacobi\nsolver, then the default, iteration k is "
            "bounce k");
-  add_file(command, "--report", options.report, "what was asked, decided and found, with energy balance (JSON)");
+  add_file(command, "--json", options.report, "what was asked, decided and found, with energy balance (JSON)");
   add_file(command, "--picture", options.picture.file,
            "a picture of the solution (.png), or its radiances (.hdr, .exr)");
   add_picture_options(command, options.picture, PictureQuality::draft);
@@ -231,7 +231,7 @@ SolveArguments with_solution(SolveArguments arguments, const std::string& comman
 
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {
   std::vector<OutputFile> files = {{"--series", arguments.series},
-                                   {"--report", arguments.report},
+                                   {"--json", arguments.report},
                                    {"--html", arguments.page},
                                    {"--lightmap", arguments.lightmap.folder}};
   for (OutputFile& file : picture_files(arguments.picture, "--picture")) files.push_back(std::move(file));

@@ -28,7 +28,7 @@ struct SolutionOptions {
   bool verbose = false;
 };
 
-/// Adds -o, --series, --report, --html, --picture with its own, --lightmap, --texel, --points and --points-output. What
+/// Adds -o, --series, --json, --html, --picture with its own, --lightmap, --texel, --points and --points-output. What
 /// is parsed lands in `options`, which must outlive the command; so below.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 

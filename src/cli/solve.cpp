@@ -91,7 +91,7 @@ class Iterates {
     if (found == solutions_.rend() && is_solved_by_colours(simulation))
       throw InputError("--series",
                        "found clear faces or mirrors of several colours, whose light is solved colour by colour; a "
-                       "series needs one solution: leave it out, or give --skip colour");
+                       "series needs one solution: leave it out, or give --disable color");
     if (found == solutions_.rend()) throw Cancelled();
     return std::move(*found);
   }

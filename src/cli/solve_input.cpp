@@ -105,7 +105,7 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
       arguments.form_factors.string(),
       "found form factors whose rows are closed (" + info.closure +
           "); expected them as computed, without closure. Compute them again: patchlight form-factors MODEL "
-          "--raw -o FOLDER");
+          "--no-closure -o FOLDER");
 }
 
 }  // namespace

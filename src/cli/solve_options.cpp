@@ -5,6 +5,7 @@
 #include "cli/effect_options.h"
 #include "cli/mesh_options.h"
 #include "cli/model_options.h"
+#include "cli/option_names.h"
 #include "cli/parse_value.h"
 #include "cli/solution_options.h"
 #include "cli/storage_option.h"
@@ -28,7 +29,7 @@ namespace {
 void add_checkpoint_option(CLI::App& command, SolveOptions& options) {
   command.option_defaults()->group("Form factors and equations");
   add(command, "--checkpoint", "FOLDER",
-      "with --storage rays, which it implies: rows are kept there while\nthe run lasts, so that one that is killed "
+      "with --method rays, which it implies: rows are kept there while\nthe run lasts, so that one that is killed "
       "goes on where it was\nwhen it is started again; default: nothing is kept",
       [&options](const std::string& text) {
         if (text.empty()) throw refusal("--checkpoint", text, "the name of a folder");
@@ -42,8 +43,9 @@ void require_checkpoint_of_rays(const SolveArguments& arguments) {
   if (!arguments.form_factors.empty())
     throw UsageError("--checkpoint and --form-factors exclude each other: rows that are stored are not traced");
   if (arguments.request.assembly.storage != Storage::rays)
-    throw UsageError("--checkpoint keeps rows of rays; found --storage " +
-                     std::string(name_of(arguments.request.assembly.storage)) + ", expected --storage rays");
+    throw UsageError(with_option_names("--checkpoint keeps rows of rays; found assembly.storage=" +
+                                       std::string(name_of(arguments.request.assembly.storage)) +
+                                       ", expected --method rays"));
 }
 
 }  // namespace
@@ -68,7 +70,7 @@ std::shared_ptr<SolveOptions> add_solve(CLI::App& tool) {
       });
   add_storage_options(command, to.request);
   add_checkpoint_option(command, to);
-  add_effect_options(command, to.request);
+  add_effect_options(command, to.request, effects_but({}));
   add_solver_options(command, to.solution, to.request);
   add_sampling_options(command, to.request);
   add_machine_options(command, to.request);

@@ -6,10 +6,10 @@
 
 namespace patchlight::cli {
 
-/// Adds --storage and --on-demand. What is parsed lands in `request`, which must outlive the command.
+/// Adds --method and --rays. What is parsed lands in `request`, which must outlive the command.
 void add_storage_options(CLI::App& command, Request& request);
 
-/// --storage tiles|rays and --rays, of form factors that are kept for good.
+/// --method pairs|rays and --rays, of form factors that are kept for good.
 void add_stored_options(CLI::App& command, Request& request);
 
 /// Where no solver is asked for, one that can do with the storage; where one is that rows of rays do not serve, pairs

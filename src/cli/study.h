@@ -5,7 +5,7 @@
 
 namespace patchlight::cli {
 
-/// Carries out `patchlight study`. \throws InputError, OutputError, MemoryError, Cancelled.
+/// Carries out `patchlight convergence`. \throws InputError, OutputError, MemoryError, Cancelled.
 ExitCode study(const StudyArguments& arguments);
 
 }  // namespace patchlight::cli

@@ -51,10 +51,10 @@ void add_study_options(CLI::App& command, StudyCommandOptions& options) {
 std::shared_ptr<StudyCommandOptions> add_study(CLI::App& tool) {
   auto options = std::make_shared<StudyCommandOptions>();
   StudyCommandOptions& to = *options;
-  CLI::App& command = *tool.add_subcommand("study", "solves a model in many ways: what accuracy costs");
+  CLI::App& command = *tool.add_subcommand("convergence", "solves a model in many ways: what accuracy costs");
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
-  add_effect_options(command, to.request, effects_but({Effect::interreflection, Effect::closure}));
+  add_effect_options(command, to.request, effects_but({Effect::interreflection}));
   add_study_options(command, to);
   add_patch_options(command, to.request);
   add_sampling_options(command, to.request);
@@ -73,8 +73,9 @@ StudyArguments finish_study(const StudyCommandOptions& options) {
   arguments.output = options.output;
   arguments.page = options.page;
   arguments.quiet = options.quiet;
-  if (arguments.models.empty()) throw UsageError("study: found no model; expected: patchlight study MODEL -o FOLDER");
-  if (arguments.output.empty()) throw UsageError("study: nothing would be written; give -o FOLDER");
+  if (arguments.models.empty())
+    throw UsageError("convergence: found no model; expected: patchlight convergence MODEL -o FOLDER");
+  if (arguments.output.empty()) throw UsageError("convergence: nothing would be written; give -o FOLDER");
   require_page_elsewhere(arguments.page, arguments.output);
   require_not_read({{"--html", arguments.page}}, arguments.models);
   check_for_study(arguments.request);

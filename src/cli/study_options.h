@@ -7,7 +7,7 @@
 
 namespace patchlight::cli {
 
-/// The options of `patchlight study` while they are being parsed.
+/// The options of `patchlight convergence` while they are being parsed.
 struct StudyCommandOptions;
 
 /// Adds the sub-command to the tool. What is parsed lands in the returned value, which must outlive `tool`'s parsing.

@@ -290,7 +290,7 @@ std::string explain_not_accurate(const Report& report) {
                                 : "sampling of form factors") +
                      ". ";
   if (by_solver) return text + "Give a smaller --tolerance, or none: then it is what the accuracy takes";
-  if (report.plan.accuracy.seconds) return text + "Give a longer --time, or more --memory if it ended before";
+  if (report.plan.accuracy.seconds) return text + "Give a longer --time-limit, or more --memory if it ended before";
   return text + (by_mesh ? "Begin with more --patches"
                  : report.plan.assembly.storage == Storage::rays
                      ? "Begin with more --rays, unless it is of luminaires, sun or sky (error_direct_irradiance); "

@@ -8,7 +8,7 @@
 
 namespace patchlight::cli {
 
-/// Runs `patchlight validate`: a table of cases with known answers. Returns validation_failed when one of them lies
+/// Runs `patchlight selftest`: a table of cases with known answers. Returns validation_failed when one of them lies
 /// outside its error bar. \throws OutputError, Cancelled.
 ExitCode validate(const ValidateArguments& arguments, std::span<const ValidationCase> cases);
 

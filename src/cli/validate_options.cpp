@@ -14,7 +14,7 @@ struct ValidateOptions {
 std::shared_ptr<ValidateOptions> add_validate(CLI::App& tool) {
   auto options = std::make_shared<ValidateOptions>();
   ValidateArguments& to = options->arguments;
-  CLI::App& command = *tool.add_subcommand("validate", "compares results with known answers: is this copy sound?");
+  CLI::App& command = *tool.add_subcommand("selftest", "compares results with known answers: is this copy sound?");
   command
       .add_option_function<std::vector<std::string>>(
           "--json",

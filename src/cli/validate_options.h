@@ -7,7 +7,7 @@
 
 namespace patchlight::cli {
 
-/// The options of `patchlight validate` while they are being parsed.
+/// The options of `patchlight selftest` while they are being parsed.
 struct ValidateOptions;
 
 /// Adds the sub-command to the tool. What is parsed lands in the returned value, which must outlive `tool`'s parsing.

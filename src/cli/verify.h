@@ -5,8 +5,8 @@
 
 namespace patchlight::cli {
 
-/// Carries out `patchlight verify`: solves, traces paths, prints where they differ most. Returns validation_failed when
-/// they disagree. \throws InputError, OutputError, MemoryError, Cancelled.
+/// Carries out `patchlight crosscheck`: solves, traces paths, prints where they differ most. Returns validation_failed
+/// when they disagree. \throws InputError, OutputError, MemoryError, Cancelled.
 ExitCode verify(const VerifyArguments& arguments);
 
 }  // namespace patchlight::cli

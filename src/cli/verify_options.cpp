@@ -38,19 +38,19 @@ void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
       [&options](const std::string& text) {
         options.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 22U));
       });
-  add(command, "--checked", "N",
+  add(command, "--sample-patches", "N",
       "how many patches are checked, seven eighths of them inside or of\ninterest, and how many sensors and rooms at "
       "most; default 64",
       [&options](const std::string& text) {
-        options.verify.checked = whole_number("--checked", text, 1, 1'000'000'000);
+        options.verify.checked = whole_number("--sample-patches", text, 1, 1'000'000'000);
       });
-  add(command, "--bar", "PERCENT",
+  add(command, "--margin", "PERCENT",
       "standard error that each patch's irradiance is granted instead of\nits error bars, in percent of it, or of the "
       "mean where that is\nlarger, e.g. 2%; default: error bars from mesh, form factors and\nsolver",
       [&options](const std::string& text) {
         const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
         const auto inside = [](double x) { return x >= 0 && x <= 100; };
-        options.bar = number("--bar", digits, "a percentage from 0 to 100", inside) / 100;
+        options.bar = number("--margin", digits, "a percentage from 0 to 100", inside) / 100;
       });
   add(command, "--json", "FILE", "the verdict and every patch that was checked (.json)",
       [&options](const std::string& text) {
@@ -64,16 +64,17 @@ void add_verify_options(CLI::App& command, VerifyCommandOptions& options) {
 std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
   auto options = std::make_shared<VerifyCommandOptions>();
   VerifyCommandOptions& to = *options;
-  CLI::App& command = *tool.add_subcommand("verify", "solves a model and checks the answer by path tracing");
+  CLI::App& command = *tool.add_subcommand("crosscheck", "solves a model and checks the answer by path tracing");
   add_model_options(command, to.model);
   add_sides_option(command, to.request);
-  add_effect_options(command, to.request);
+  add_effect_options(command, to.request, effects_but({}));
   add_verify_options(command, to);
   add_patch_options(command, to.request);
   add_graded_option(command, to.request);
   add_refinement_options(command, to.request);
   add_sampling_options(command, to.request);
   add_storage_options(command, to.request);
+  add_closure_option(command, to.request);
   add_machine_options(command, to.request);
   command.option_defaults()->group("The run");
   command.add_flag("-q,--quiet", to.quiet,
@@ -83,7 +84,7 @@ std::shared_ptr<VerifyCommandOptions> add_verify(CLI::App& tool) {
 
 VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   if (options.model.models.empty()) {
-    throw UsageError("verify: found no model; expected: patchlight verify MODEL");
+    throw UsageError("crosscheck: found no model; expected: patchlight crosscheck MODEL");
   }
   VerifyArguments arguments;
   arguments.models = model_files(options.model);
@@ -99,12 +100,12 @@ VerifyArguments finish_verify(const VerifyCommandOptions& options) {
   Storage& storage = arguments.request.assembly.storage;
   if (options.bar && storage == Storage::rays) {
     throw UsageError(
-        "--bar: found with --storage rays or --rays; it takes the place of all errors, and what rays err "
+        "--margin: found with --method rays or --rays; it takes the place of all errors, and what rays err "
         "is in none that is given. Give one of them");
   }
   if (options.bar && storage == Storage::automatic) storage = Storage::tiles;
   arguments.request = with_fitting_solver(std::move(arguments.request), false);
-  const OptionName error_bars{"accuracy.error_bars", "the error bars that verify takes without --bar PERCENT"};
+  const OptionName error_bars{"accuracy.error_bars", "the error bars that crosscheck takes without --margin PERCENT"};
   check_with_names(arguments.request, std::array{error_bars});
   arguments.json = options.json;
   return arguments;

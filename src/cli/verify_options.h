@@ -7,7 +7,7 @@
 
 namespace patchlight::cli {
 
-/// The options of `patchlight verify` while they are being parsed.
+/// The options of `patchlight crosscheck` while they are being parsed.
 struct VerifyCommandOptions;
 
 /// Adds the sub-command to the tool. What is parsed lands in the returned value, which must outlive `tool`'s parsing.

@@ -3,17 +3,43 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 namespace patchlight {
+namespace {
+
+constexpr const char* too_large = "a size in it needs more memory than there is";
+
+bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+// "[json.exception.out_of_range.403] key 'rooms' not found" names the key; other faults have no words but the library's.
+std::string reason_of_json(const std::string& text) {
+  const std::size_t begin = text.find("key '");
+  const std::size_t end = begin == std::string::npos ? begin : text.find('\'', begin + 5);
+  if (contains(text, "out_of_range.403") && end != std::string::npos)
+    return "it has no key " + text.substr(begin + 4, end - begin - 3);
+  if (contains(text, ".out_of_range.")) return "a number in it is out of range";
+  if (contains(text, ".type_error.")) return "a value in it has the wrong type";
+  const std::size_t line = text.find("at line ");
+  const std::size_t colon = line == std::string::npos ? line : text.find(':', line);
+  if (colon == std::string::npos) return "it is not JSON";
+  return "it is not JSON " + text.substr(line, colon - line);
+}
+
+}  // namespace
 
 std::string reason_of(const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
-      dynamic_cast<const std::length_error*>(&error) != nullptr)
-    return "a size in it needs more memory than there is";
-  std::string text = error.what();
-  if (text.find("::_M_") != std::string::npos) return "a number in it refers to nothing";
-  if (text.starts_with("[json.exception")) text.erase(0, std::min(text.size(), text.find("] ") + 2));
+  const bool is_of_size = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                          dynamic_cast<const std::length_error*>(&error) != nullptr;
+  return is_of_size ? too_large : reason_of(std::string(error.what()));
+}
+
+std::string reason_of(const std::string& library_text) {
+  std::string text = library_text;
   std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.starts_with("[json.exception")) return reason_of_json(text);
+  if (contains(text, "bad_alloc") || contains(text, "length_error")) return too_large;
+  if (contains(text, "::_M_") || contains(text, "__n (which") || contains(text, "out_of_range")) return "a number in it refers to nothing";
   return text;
 }
 

@@ -1,10 +1,11 @@
 #include "input/new_scene_file.h"
 
+#include "patchlight/base/geometry.h"
+
 #include "base/rounded.h"
 #include "base/shortest.h"
 #include "input/materials.h"
 #include "input/toml_sensors.h"
-#include "input/toml_text.h"
 #include "input/toml_value.h"
 #include "scene/dark_solids.h"
 #include "scene/sealed_room.h"
@@ -18,10 +19,34 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+// A text as a string of a TOML file; control characters become question marks.
+std::string toml_text(const std::string& text);
+
+// A point as a list of a TOML file, "[1, 2.5, 0]", to a thousandth.
+std::string toml_text(const Point& point);
+
+std::string toml_text(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') result += '\\';
+    const bool is_control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+    result += is_control ? '?' : letter;
+  }
+  return result + "\"";
+}
+
+std::string toml_text(const Point& point) {
+  std::string text = "[";
+  for (const double value : point)
+    text += (text.size() > 1 ? ", " : "") + shortest(std::round(1000 * value) / 1000 + 0.0);
+  return text + "]";
+}
 
 constexpr std::size_t most_named = 12;
 constexpr double smallest_room = 2;  // m^2
@@ -259,7 +284,7 @@ std::string new_scene_file(const Scene& scene, const NewLight& light, const NewP
   std::ostringstream text;
   text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
-       << " -o result.vtp --report result.json --picture result.png\n\n"
+       << " -o result.vtp --json result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
   text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, light)
        << sensor_tables(scene, places) << camera_tables(places.cameras);

@@ -2,29 +2,45 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
+#include "patchlight/scene/scene.h"
 
 #include "base/lower_case.h"
 #include "base/near_match.h"
 #include "input/read_collada.h"
+#include "input/read_gbxml.h"
 #include "input/read_gltf.h"
 #include "input/read_hbjson.h"
 #include "input/read_ifc.h"
+#include "input/read_mitsuba.h"
 #include "input/read_obj.h"
 #include "input/read_off.h"
 #include "input/read_ply.h"
 #include "input/read_radiance.h"
 #include "input/read_stl.h"
-#include "input/read_xml.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
+#include "input/xml_file.h"
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+// Reads an XML file by its first element: <scene> is a Mitsuba scene, <gbXML> a building. Throws InputError naming
+// the file and the line.
+Scene read_xml(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
+  const XmlFile xml = read_xml_file(file, file.string());
+  const std::string root = xml.document.document_element().name();
+  if (root == "scene") return read_mitsuba(file, metres_per_unit, confine);
+  if (root == "gbXML") return read_gbxml(xml, metres_per_unit);
+  throw InputError(file.string(), "the first element is <" + root +
+                                      ">; expected <scene>, of a Mitsuba scene, or <gbXML>, of a building");
+}
 
 // ".obj, .ply, ..."
 std::string allowed_extensions() {

@@ -1,11 +1,14 @@
 #include "input/read_obj.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/problem.h"
 
+#include "base/lower_case.h"
+#include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/at_line.h"
-#include "input/mtl_pictures.h"
-#include "input/obj_libraries.h"
+#include "input/materials.h"
+#include "input/picture_colours.h"
 #include "input/read_mtl.h"
 #include "input/scan_obj.h"
 #include "input/stated_mirrors.h"
@@ -14,14 +17,251 @@
 #include "input/texture_maps.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <set>
+#include <span>
 #include <sstream>
+#include <string>
 #include <tiny_obj_loader.h>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// What the mtllib statements of an OBJ file bring.
+struct Libraries {
+  std::vector<MtlMaterial> materials;        // of those with the same name only the first counts
+  std::vector<std::string> texts;            // the files' bytes, for the checksum
+  std::vector<std::filesystem::path> files;  // the files, and the textures that they name
+  std::vector<Problem> problems;  // files that are missing, or beside the model instead of where they should be
+};
+
+// A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
+struct LibraryFile {
+  std::string name;
+  std::filesystem::path place;
+  bool moved = false;  // it is beside the model instead of where the statement says
+};
+
+bool is_file(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error);
+}
+
+// The files of a folder by their names in lower case, of several names that differ in capitals alone the first. Listed
+// when it is asked for, once.
+class Folder {
+ public:
+  explicit Folder(std::filesystem::path place) : place_(std::move(place)) {}
+
+  const std::filesystem::path& place() const { return place_; }
+  std::optional<std::filesystem::path> similar(const std::filesystem::path& name) {
+    if (!listed_) list();
+    const auto found = names_.find(in_lower_case(name.string()));
+    return found == names_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  void list() {
+    listed_ = true;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(place_.empty() ? "." : place_, error)) {
+      const std::filesystem::path name = entry.path().filename();
+      const auto [found, is_new] = names_.emplace(in_lower_case(name.string()), name);
+      if (!is_new && name < found->second) found->second = name;
+    }
+  }
+
+  std::filesystem::path place_;
+  std::map<std::string, std::filesystem::path> names_;
+  bool listed_ = false;
+};
+
+// Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
+// written under Windows. What lies outside of `confine` is refused before anybody looks whether it is there.
+LibraryFile find_library(Folder& beside, const std::string& name, const std::string& where,
+                         const std::filesystem::path& confine) {
+  const std::filesystem::path& folder = beside.place();
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  for (const std::string& path : {name, slashes}) {
+    require_within(confine, folder / path, where);
+    if (is_file(folder / path)) return {name, folder / path};
+  }
+  const std::filesystem::path last = std::filesystem::path(slashes).filename();
+  if (last.empty()) return {name, {}};
+  if (is_file(folder / last)) return {name, folder / last, true};
+  const std::optional<std::filesystem::path> similar = beside.similar(last);
+  if (!similar || !is_file(folder / *similar)) return {name, {}};
+  require_within(confine, folder / *similar, where);
+  return {name, folder / *similar, true};
+}
+
+// The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
+std::vector<LibraryFile> library_files(Folder& beside, const ObjName& statement, const std::string& where,
+                                       const std::filesystem::path& confine) {
+  const LibraryFile whole = find_library(beside, statement.name, where, confine);
+  if (!whole.place.empty() && !whole.moved) return {whole};
+  std::vector<LibraryFile> files;
+  for (const std::string_view name : words(statement.name)) {
+    files.push_back(find_library(beside, std::string(name), where, confine));
+  }
+  const bool all_there = std::all_of(files.begin(), files.end(), [](const auto& file) { return !file.place.empty(); });
+  return all_there || whole.place.empty() ? files : std::vector{whole};
+}
+
+// A texture stands beside the material file; its path may have been written under Windows.
+std::string place_of(std::string texture, const std::filesystem::path& library) {
+  std::replace(texture.begin(), texture.end(), '\\', '/');
+  return texture.empty() ? texture : (library.parent_path() / texture).string();
+}
+
+// The file and the textures that its materials name, which stand beside it.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& library,
+                                            const std::vector<MtlMaterial>& materials) {
+  std::vector<std::filesystem::path> files = {library};
+  for (const MtlMaterial& material : materials) {
+    for (const std::string& texture : material.textures) files.push_back(library.parent_path() / texture);
+  }
+  return files;
+}
+
+std::optional<Problem> problem_with(const LibraryFile& file, const std::string& where) {
+  const std::string found = "mtllib (" + where + ") names '" + file.name + "', ";
+  if (file.place.empty()) {
+    return Problem{ProblemKind::missing_material_file,
+                   1,
+                   found +
+                       "which is neither there nor beside the model; the materials that no other file defines "
+                       "are grey, reflectance 0.5",
+                   {}};
+  }
+  if (!file.moved) return std::nullopt;
+  return Problem{ProblemKind::moved_material_file,
+                 1,
+                 found + "which is not there; " + file.place.string() + " is taken instead",
+                 {}};
+}
+
+// Reads the files that the statements name. A file that is not where its name says is looked for beside the model,
+// under the last part of its name, in capitals or not. Throws InputError when one cannot be read, or does not
+// lie in the folder `confine`, if there is one.
+Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements,
+                         const std::filesystem::path& confine) {
+  Libraries libraries;
+  Folder beside(obj.parent_path());
+  std::set<std::string> names;
+  std::set<std::filesystem::path> places;
+  for (const ObjName& statement : statements) {
+    const std::string where = at_line(obj, statement.line);
+    for (const LibraryFile& file : library_files(beside, statement, where, confine)) {
+      if (!names.insert(file.name).second) continue;
+      const std::optional<Problem> problem = problem_with(file, where);
+      if (problem) libraries.problems.push_back(*problem);
+      if (file.place.empty() || !places.insert(file.place).second) continue;
+      libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
+      std::vector<MtlMaterial> materials = read_mtl(libraries.texts.back(), file.place.string());
+      const std::vector<std::filesystem::path> named = files_of(file.place, materials);
+      libraries.files.insert(libraries.files.end(), named.begin(), named.end());
+      for (MtlMaterial& material : materials) {
+        material.diffuse_texture = place_of(material.diffuse_texture, file.place);
+        material.mask_picture = place_of(material.mask_picture, file.place);
+      }
+      libraries.materials.insert(libraries.materials.end(), materials.begin(), materials.end());
+    }
+  }
+  return libraries;
+}
+
+// The mask that the picture of map_d is.
+std::optional<PictureMask> mask_of(const MtlMaterial& material, const PictureColours& pictures) {
+  const auto found = pictures.masks.find(material.mask_picture);
+  if (found == pictures.masks.end()) return std::nullopt;
+  const bool is_colour_alone = material.mask_picture == material.diffuse_texture && !found->second.colour;
+  return is_colour_alone ? PictureMask{1, std::nullopt} : found->second;
+}
+
+// What d and Tr make of the covered share, and light straight through the rest: T = 1 - m + m T_d. Holes alone have no
+// index of refraction. What is covered has the mean colour of map_Kd, or that of its part that is covered where its own
+// alpha tells.
+MtlMaterial with_holes(MtlMaterial material, const PictureMask& mask, const Spectrum& factor) {
+  const double m = mask.covered;
+  const std::string statement = "map_d covers " + rounded(m);
+  MtlPane pane{Spectrum::Constant(3, 1 - m), 1, statement};
+  if (material.pane) {
+    pane.transmittance += m * material.pane->transmittance;
+    pane.index = material.pane->index;
+    pane.statement = material.pane->statement + " and " + statement;
+  }
+  const bool is_own = material.mask_picture == material.diffuse_texture;
+  pane.reflectance = m * (is_own && mask.colour ? Spectrum(factor * *mask.colour) : material.reflectance);
+  material.pane = std::move(pane);
+  material.mirror.reset();
+  material.covered = m;
+  return material;
+}
+
+MtlMaterial with_picture(MtlMaterial material, const PictureColours& pictures) {
+  const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
+  const Spectrum factor = has_factor ? material.reflectance : rgb(1, 1, 1);
+  const auto mean = pictures.by_file.find(material.diffuse_texture);
+  if (mean != pictures.by_file.end()) {
+    material.reflectance = factor * mean->second;
+    material.has_mean = true;
+  }
+  const auto texture = pictures.textures.find(material.diffuse_texture);
+  if (texture != pictures.textures.end()) {
+    const Wrap wrap = material.texture_options.clamp ? Wrap::clamp : Wrap::repeat;
+    material.texture = {texture->second, primaries_times(factor), {wrap, wrap}};
+  }
+  const std::optional<PictureMask> mask = mask_of(material, pictures);
+  material.has_mask = mask.has_value();
+  return mask && mask->covered < 1 ? with_holes(std::move(material), *mask, factor) : material;
+}
+
+// The pictures that map_Kd and map_d name. `model` is the file that names the material files.
+PictureColours pictures_of(std::span<const MtlMaterial> materials, const std::filesystem::path& confine,
+                           const std::string& model) {
+  std::set<std::filesystem::path> names;
+  for (const MtlMaterial& material : materials) {
+    for (const std::string* const picture : {&material.diffuse_texture, &material.mask_picture})
+      if (!picture->empty()) names.insert(*picture);
+  }
+  return picture_colours({names.begin(), names.end()}, confine, model);
+}
+
+// The materials with the pictures of map_Kd and their mean colours, times Kd where it is not 0, as exporters write it
+// beside a picture, and with the holes of those of map_d. Where map_d is the picture of map_Kd its alpha counts, and
+// without any it makes no holes.
+std::vector<MtlMaterial> with_pictures(std::vector<MtlMaterial> materials, const PictureColours& pictures) {
+  for (MtlMaterial& material : materials) material = with_picture(std::move(material), pictures);
+  return materials;
+}
+
+// One sentence for each map_Kd and map_d whose picture cannot be read, and one on those that leave holes.
+std::vector<std::string> notes_on_pictures(std::span<const MtlMaterial> materials, const PictureColours& pictures) {
+  std::vector<std::string> notes;
+  const auto note = [&](const MtlMaterial& material, const std::string& picture, const std::string& statement,
+                        const std::string& instead) {
+    const auto fault = pictures.faults.find(picture);
+    if (fault == pictures.faults.end()) return;
+    notes.push_back("the picture " + picture + " of material '" + material.name + "' (" + statement +
+                    " of its material file) " + fault->second + "; " + instead);
+  };
+  std::vector<std::string> covered;
+  for (const MtlMaterial& material : materials) {
+    note(material, material.diffuse_texture, "map_Kd, line " + std::to_string(material.texture_line),
+         "Kd is used alone");
+    note(material, material.mask_picture, "map_d, line " + std::to_string(material.mask_line), "it makes no holes");
+    if (material.covered < 1) covered.push_back(material.name + " (" + rounded(material.covered) + ")");
+  }
+  for (std::string& text : note_on(covered_note, covered)) notes.push_back(std::move(text));
+  return notes;
+}
 
 constexpr double default_reflectance = 0.5;
 constexpr const char* default_name = "default";

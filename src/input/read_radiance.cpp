@@ -1,28 +1,180 @@
 #include "input/read_radiance.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
 
+#include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/at_line.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/radiance_genbox.h"
 #include "input/radiance_material.h"
-#include "input/radiance_sources.h"
-#include "input/radiance_surfaces.h"
 #include "input/radiance_text.h"
 #include "input/radiance_xform.h"
 #include "input/reading_limits.h"
+#include "input/round_shapes.h"
 #include "input/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// True for the kinds of surfaces that have a shape of their own: polygon, sphere, bubble, cylinder, tube, cone, cup
+// and ring.
+bool is_radiance_surface(const std::string& kind);
+
+constexpr std::array surfaces = {"polygon", "sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring"};
+
+Point point_at(const RadiancePrimitive& primitive, std::size_t k) {
+  return {primitive.numbers[k], primitive.numbers[k + 1], primitive.numbers[k + 2]};
+}
+
+FacetedShape turned_inside_out(FacetedShape shape) {
+  for (std::vector<std::uint32_t>& face : shape.faces) std::reverse(face.begin(), face.end());
+  return shape;
+}
+
+FacetedShape outline_of(const RadiancePrimitive& primitive) {
+  FacetedShape shape;
+  for (std::size_t k = 0; k < primitive.numbers.size(); k += 3) shape.points.push_back(point_at(primitive, k));
+  shape.faces.emplace_back(shape.points.size());
+  std::iota(shape.faces[0].begin(), shape.faces[0].end(), 0U);
+  return shape;
+}
+
+// With two radii, or one for both ends.
+FacetedShape cone_of(const RadiancePrimitive& primitive) {
+  const double first = primitive.numbers[6];
+  return faceted_cone(point_at(primitive, 0), point_at(primitive, 3), first,
+                      primitive.numbers.size() > 7 ? primitive.numbers[7] : first);
+}
+
+FacetedShape ring_of(const RadiancePrimitive& primitive) {
+  const auto [inner, outer] = std::minmax(primitive.numbers[6], primitive.numbers[7]);
+  return faceted_ring(point_at(primitive, 0), point_at(primitive, 3), inner, outer);
+}
+
+void require_arguments(const RadiancePrimitive& primitive, const std::string& where) {
+  const std::size_t found = primitive.numbers.size();
+  const std::string start = primitive.kind + " " + primitive.name + " has " + std::to_string(found) + " numbers; ";
+  if (primitive.kind == "polygon") {
+    if (found >= 9 && found % 3 == 0) return;
+    throw InputError(where, start + "expected three for each of its corners, nine at least");
+  }
+  const bool is_sphere = primitive.kind == "sphere" || primitive.kind == "bubble";
+  const bool is_cylinder = primitive.kind == "cylinder" || primitive.kind == "tube";
+  const std::size_t expected = is_sphere ? 4 : is_cylinder ? 7 : 8;
+  if (found != expected) throw InputError(where, start + "expected " + std::to_string(expected));
+  const double least = *std::min_element(primitive.numbers.begin() + (is_sphere ? 3 : 6), primitive.numbers.end());
+  if (least < 0)
+    throw InputError(where, primitive.kind + " " + primitive.name + " has a negative radius; expected 0 or more");
+}
+
+bool is_radiance_surface(const std::string& kind) {
+  return std::find(surfaces.begin(), surfaces.end(), kind) != surfaces.end();
+}
+
+// True for those that facets stand for.
+bool is_round(const std::string& kind) { return is_radiance_surface(kind) && kind != "polygon"; }
+
+// The faces of such a surface, in units of the file; a polygon has one. Throws InputError at `where`: it has another
+// number of arguments than it should, a length or a radius that is not above 0.
+FacetedShape radiance_surface(const RadiancePrimitive& primitive, const std::string& where) {
+  require_arguments(primitive, where);
+  const std::string& kind = primitive.kind;
+  if (kind == "polygon") return outline_of(primitive);
+  FacetedShape shape;
+  if (kind == "sphere" || kind == "bubble") {
+    if (primitive.numbers[3] > 0) shape = faceted_sphere(point_at(primitive, 0), primitive.numbers[3]);
+  } else {
+    shape = kind == "ring" ? ring_of(primitive) : cone_of(primitive);
+  }
+  if (shape.faces.empty())
+    throw InputError(where, kind + " " + primitive.name +
+                                " has no area; expected radii above 0 and two places, or a "
+                                "direction, that are not one");
+  const bool is_inside_out = kind == "bubble" || kind == "tube" || kind == "cup";
+  return is_inside_out ? turned_inside_out(std::move(shape)) : shape;
+}
+
+// Light from far away, from the disk that Radiance's source subtends on the sphere of directions.
+struct FarSource {
+  std::string name;
+  Vector direction;          // unit, towards it
+  double degrees = 0;        // across the disk
+  Spectrum radiance{};       // W/(m^2 sr)
+  bool has_pattern = false;  // the radiance varies over it
+};
+
+constexpr double most_degrees_of_a_sun = 5;
+
+// A half sphere around the vertical, or all of it.
+bool is_sky(const FarSource& source) {
+  const bool is_half = source.degrees >= 179.9 && std::abs(source.direction.z()) > 0.999;
+  return !source.has_pattern && (is_half || source.degrees >= 359);
+}
+
+// E = L pi sin^2(a / 2) across the direction to a disk of angle a: 6.7967e-5 sr for the sun's .533 degrees.
+Sun far_sun(const FarSource& source) {
+  const double radius = source.degrees * std::numbers::pi / 360;
+  return {source.direction, source.radiance * std::numbers::pi * std::pow(std::sin(radius), 2)};
+}
+
+Sky with_half(Sky sky, const FarSource& source) {
+  const bool is_all = source.degrees >= 359;
+  if (is_all || source.direction.z() > 0) sky.zenith_radiance = source.radiance;
+  if (is_all || source.direction.z() < 0) sky.ground_radiance = source.radiance;
+  return sky;
+}
+
+// A source primitive, turned by `turn`; its radiance is left open. Throws InputError at `where`: it has no four
+// numbers, no direction or no angle.
+FarSource far_source(const RadiancePrimitive& primitive, const Eigen::Matrix3d& turn, const std::string& where) {
+  if (primitive.numbers.size() != 4)
+    throw InputError(where, "source " + primitive.name + " has " + std::to_string(primitive.numbers.size()) +
+                                " numbers; expected a direction and an angle in degrees, 4");
+  const Vector direction = turn * Vector(primitive.numbers[0], primitive.numbers[1], primitive.numbers[2]);
+  const double degrees = primitive.numbers[3];
+  if (!(direction.stableNorm() > 0) || !std::isfinite(direction.stableNorm()) || !(degrees > 0 && degrees <= 360))
+    throw InputError(where, "source " + primitive.name + " has no direction, or no angle above 0 up to 360 degrees");
+  return {primitive.name, direction.stableNormalized(), degrees};
+}
+
+// The scene with what can be carried: the first disk up to 5 degrees across is the sun, even half spheres above and
+// below are an even sky and the ground. Notes name the others, and what to do for a sky.
+Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
+  LeftOut left_out;
+  for (const FarSource& source : sources) {
+    const std::string name = "source " + source.name;
+    if (source.degrees <= most_degrees_of_a_sun && !source.has_pattern && !scene.sun) {
+      scene.sun = far_sun(source);
+      scene.notes.push_back(name + " of " + rounded(source.degrees) + " degrees is the sun");
+    } else if (is_sky(source)) {
+      scene.sky =
+          with_half(scene.sky.value_or(Sky{.zenith_radiance = rgb(0, 0, 0), .ground_radiance = rgb(0, 0, 0)}), source);
+    } else if (source.degrees > most_degrees_of_a_sun) {
+      left_out.lose(
+          "sources of light that varies, or that are no half sphere, are left out: --sky gives a sky, e.g. --sky "
+          "overcast:10000lx",
+          name + " of " + rounded(source.degrees) + " degrees");
+    } else {
+      left_out.lose("sources are left out beside a sun, or with a pattern", name);
+    }
+  }
+  return left_out.on(std::move(scene));
+}
 
 namespace fs = std::filesystem;
 

@@ -1,23 +1,26 @@
 #include "patchlight/input/read_scene.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
 
+#include "base/rounded.h"
 #include "base/shortest.h"
 #include "files/sha256.h"
-#include "input/daylight_setting.h"
 #include "input/material_settings.h"
 #include "input/materials.h"
 #include "input/merge_scenes.h"
-#include "input/placed.h"
 #include "input/read_model.h"
 #include "input/scene_file.h"
+#include "input/scene_lights.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml_sensors.h"
-#include "input/with_bands.h"
 #include "light/colour.h"
+#include "light/photometry.h"
+#include "scene/band_choice.h"
 #include "scene/dimmed.h"
+#include "scene/joined_bands.h"
 #include "scene/joined_faces.h"
 #include "scene/less_detail.h"
 #include "scene/limits.h"
@@ -28,10 +31,179 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+std::string counted(std::size_t count, std::size_t of, const std::string& noun) {
+  return std::to_string(count) + " of " + std::to_string(of) + " " + noun + (of == 1 ? "" : "s");
+}
+
+bool has_spectrum(const MaterialSpectra& spectra) {
+  return spectra.reflectance || spectra.specular_reflectance || spectra.transmittance || spectra.diffuse_transmittance;
+}
+
+// "3 of 5 materials and 1 of 2 lights have spectra"
+std::string what_has_spectra(const Scene& scene) {
+  const auto materials =
+      static_cast<std::size_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                             [](const Material& material) { return has_spectrum(material.spectra); }));
+  std::size_t lights = 0, with_spectrum = 0;
+  for_all_spectra(
+      scene, [](const Spectrum&, const SampledSpectrum*) {},
+      [&](const Spectrum& values, const SampledSpectrum* spectrum) {
+        if (!(values > 0).any()) return;
+        ++lights;
+        with_spectrum += spectrum ? 1 : 0;
+      });
+  return counted(materials, scene.materials.size(), "material") + " and " + counted(with_spectrum, lights, "light") +
+         " have spectra";
+}
+
+std::string bands_in_words(std::size_t number) { return std::to_string(number) + (number == 1 ? " band" : " bands"); }
+
+Scene in_asked_bands(Scene scene, const std::vector<double>& edges_nm) {
+  const std::size_t number = edges_nm.size() - 1;
+  const std::string has = what_has_spectra(scene);
+  const double error = colour_error(scene, edges_nm);
+  scene = in_wavelength_bands(std::move(scene), edges_nm);
+  scene.band_choice = BandChoice{
+      true,
+      has + "; " + bands_in_words(number) + " are asked for, colours are off by up to " + rounded(error, 2) + " dE00",
+      "the solution has " + bands_in_words(number) + " instead of 3"};
+  return scene;
+}
+
+Scene in_needed_bands(Scene scene, double color_error) {
+  const std::string has = what_has_spectra(scene);
+  const BandsWithError chosen = bands_within(scene, color_error);
+  const std::size_t number = chosen.edges_nm.size() - 1;
+  scene = with_alike_bands_joined(in_wavelength_bands(std::move(scene), chosen.edges_nm));
+  std::string reason = has + "; with " + bands_in_words(number) + " colours are off by up to " +
+                       rounded(chosen.color_error, 2) + " dE00, " + shortest(color_error) + " is asked for";
+  if (scene.bands.size() < number)
+    reason += "; nothing tells some of them apart, so that " + bands_in_words(scene.bands.size()) + " remain";
+  scene.band_choice =
+      BandChoice{true, std::move(reason), bands_in_words(scene.bands.size()) + " instead of 400, one for each nm"};
+  return scene;
+}
+
+// The scene, which is in linear RGB, in the bands that are asked for, and Scene::band_choice, which says why. Nothing
+// changes where nothing has a spectrum by wavelength and no bands are asked for.
+Scene with_bands(Scene scene, const BandsAsked& asked) {
+  if (!asked.edges_nm.empty()) return in_asked_bands(std::move(scene), asked.edges_nm);
+  if (!has_spectra(scene)) return scene;
+  if (!asked.rgb) return in_needed_bands(std::move(scene), asked.color_error);
+  const std::string has = what_has_spectra(scene);
+  scene = in_rgb(std::move(scene));
+  scene.band_choice = BandChoice{false, has + "; linear RGB is asked for, in which they count by their colours",
+                                 "3 bands; colours of light that is reflected more than once may be off"};
+  return scene;
+}
+
+// The scene with its vertices moved, in metres. A mirrored polygon is walked the other way round, so that its front
+// stays the front.
+Scene placed(Scene scene, const Eigen::Affine3d& placement) {
+  for (Point& vertex : scene.vertices) vertex = placement * vertex;
+  for (SensorGroup& group : scene.sensors) {
+    for (Sensor& sensor : group.sensors) {
+      sensor.point = placement * sensor.point;
+      sensor.normal = (placement.linear() * sensor.normal).normalized();
+    }
+  }
+  for (Camera& camera : scene.cameras) {
+    camera.eye = placement * camera.eye;
+    camera.target = placement * camera.target;
+  }
+  for (NamedRoom& room : scene.rooms)
+    for (std::vector<Point>& face : room.faces)
+      for (Point& corner : face) corner = placement * corner;
+  const auto turn = [&](Vector& direction) { direction = (placement.linear() * direction).normalized(); };
+  for (Luminaire& luminaire : scene.luminaires) {
+    luminaire.position = placement * luminaire.position;
+    turn(luminaire.aim);
+    turn(luminaire.zero_plane);
+  }
+  turn(scene.north);
+  if (scene.sun) turn(scene.sun->direction);
+  // L x + o = L A^-1 (x' - t) + o for x' = A x + t.
+  const Eigen::Matrix3d back = placement.linear().inverse();
+  for (TextureMap& map : scene.texture_maps) {
+    map.linear = map.linear * back;
+    map.offset -= map.linear * placement.translation();
+  }
+  if (placement.linear().determinant() >= 0) return scene;
+  for (Polygon& polygon : scene.polygons) std::reverse(polygon.corners.begin(), polygon.corners.end());
+  return scene;
+}
+
+// What is seen of the ground of most places.
+constexpr double usual_ground = 0.2;
+
+Spectrum irradiance_for(double illuminance) { return Spectrum::Constant(1, illuminance / luminous_efficacy); }
+
+// What cannot be together, or is missing.
+void require_consistent(const DaylightSetting& setting) {
+  if (setting.weather && (setting.sky || setting.sun))
+    throw InputError("read.daylight.weather", std::string("found with ") +
+                                                  (setting.sky ? "read.daylight.sky" : "read.daylight.sun") +
+                                                  "; a weather file has both sun and sky: leave one of the two out");
+  if (setting.ground_reflectance && !setting.sky && !setting.weather)
+    throw InputError("read.daylight.ground",
+                     "found without a sky; the ground is lit by one: add read.daylight.sky=overcast:10000lx");
+  const bool needs_sun = setting.sky == SkyKind::cie_clear || setting.sky == SkyKind::perez;
+  if (needs_sun && !setting.sun)
+    throw InputError("read.daylight.sky",
+                     "found a sky that is brightest around the sun, without a sun; say where it stands, as in "
+                     "read.daylight.sun=2024-06-21T12:00:00Z@52.5,13.4 or read.daylight.sun=40,180");
+  const bool shapes_only = setting.sun && !(setting.sun_illuminance > 0) && !needs_sun;
+  if (shapes_only)
+    throw InputError("read.daylight.sun",
+                     "found no strength; expected one in lx across its rays, as in read.daylight.sun=40,180:80000lx");
+  if (setting.measured && setting.sun_illuminance > 0)
+    throw InputError("read.daylight.sun", "found a strength, which is known from what was measured; leave it out");
+}
+
+SunEntry sun_entry(const DaylightSetting& setting) {
+  SunEntry sun;
+  sun.position = SolarPosition{setting.sun->altitude, setting.sun->azimuth};
+  if (setting.sun_illuminance > 0) sun.normal_irradiance = irradiance_for(setting.sun_illuminance);
+  return sun;
+}
+
+SkyEntry sky_entry(const DaylightSetting& setting) {
+  if (setting.sky != SkyKind::perez) return {*setting.sky, irradiance_for(setting.sky_illuminance), {}, {}};
+  SolarIrradiance measured = setting.measured.value_or(SolarIrradiance{});
+  measured.day_of_year = setting.sun->day_of_year;
+  return {SkyKind::perez, {}, measured, {}};
+}
+
+// True when a sky, a sun or a weather file is asked for.
+bool asks_for_daylight(const DaylightSetting& setting) {
+  return setting.sky || setting.sun || setting.weather || setting.ground_reflectance;
+}
+
+// Sun and sky of a setting. The weather file must lie in the folder `confine`, if there is one. Throws InputError
+// naming a field of read.daylight, or the file and line.
+LightEntries lights_of(const DaylightSetting& setting, const std::filesystem::path& confine) {
+  require_consistent(setting);
+  LightEntries lights;
+  lights.photometric = true;
+  lights.where = setting.sky ? "read.daylight.sky" : setting.sun ? "read.daylight.sun" : "read.daylight.weather";
+  if (setting.weather) {
+    require_within(confine, setting.weather->file, "read.daylight.weather");
+    lights.weather =
+        read_epw(setting.weather->file, setting.weather->month, setting.weather->day, setting.weather->hour);
+  }
+  if (setting.sun) lights.sun = sun_entry(setting);
+  if (setting.sky) lights.sky = sky_entry(setting);
+  if (setting.sky || setting.weather) lights.ground_reflectance = setting.ground_reflectance.value_or(usual_ground);
+  return lights;
+}
 
 Scene set_upright(Scene scene, const ReadOptions& options) {
   if (options.up || !scene.up_stated) scene.up = options.up ? *options.up : upright_axis(scene);

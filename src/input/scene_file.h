@@ -53,9 +53,9 @@ struct SceneFile {
   std::optional<BandsAsked> bands;
 };
 
-/// Reads a scene file in TOML; its paths start from its folder. docs/formats.md lists the keys. \throws InputError
-/// naming file, line and key, what was found and what was expected; also when a file does not lie in the folder
-/// `confine`, if there is one.
+/// Reads a scene file in TOML; its paths start from its folder. docs/reference/scene-file.md lists the keys. \throws
+/// InputError naming file, line and key, what was found and what was expected; also when a file does not lie in the
+/// folder `confine`, if there is one.
 SceneFile read_scene_file(const std::filesystem::path& file, const std::filesystem::path& confine);
 
 }  // namespace patchlight

@@ -25,7 +25,7 @@ struct Mirrors {
 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
 /// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to 16.
-/// `lighting` must have mirrors; it is sampled as direct_irradiance() samples. docs/theory.md section 11.
+/// `lighting` must have mirrors; it is sampled as direct_irradiance() samples. docs/theory/panes-mirrors-sheets.md.
 /// O(patches x chains x lights x mirrored_samples). \throws Cancelled.
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options = {}, const Observer& observer = {});

@@ -1,21 +1,336 @@
 #include "mesh/mesher.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/sides.h"
 
 #include "base/parallel.h"
-#include "mesh/boundary_vertices.h"
 #include "mesh/cut_outlines.h"
 #include "mesh/cut_polygons.h"
-#include "mesh/graded_edges.h"
 #include "mesh/outline.h"
 #include "mesh/polygon_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// An edge of an outline, by whose ends its neighbours are found.
+struct PlacedEdge {
+  Point first, last;  // its ends, that which comes first first
+  std::uint32_t polygon;
+  std::uint32_t edge;
+  bool forward;  // the outline goes from the first to the last
+};
+
+bool have_same_ends(const PlacedEdge& a, const PlacedEdge& b) { return a.first == b.first && a.last == b.last; }
+
+std::vector<PlacedEdge> placed_edges(std::span<const Outline> outlines) {
+  std::vector<PlacedEdge> edges;
+  for (std::uint32_t p = 0; p < outlines.size(); ++p) {
+    const std::vector<Point>& corners = outlines[p].corners;
+    for (std::uint32_t k = 0; k < corners.size(); ++k) {
+      const Point& from = corners[k];
+      const Point& to = corners[(k + 1) % corners.size()];
+      const bool forward = comes_before(from, to);
+      edges.push_back({forward ? from : to, forward ? to : from, p, k, forward});
+    }
+  }
+  std::stable_sort(edges.begin(), edges.end(), [](const PlacedEdge& a, const PlacedEdge& b) {
+    return a.first == b.first ? comes_before(a.last, b.last) : comes_before(a.first, b.first);
+  });
+  return edges;
+}
+
+// Calls back with every edge and every one of another polygon that has the same ends.
+void for_each_shared(std::span<const PlacedEdge> edges, const auto& visit) {
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    while (end < edges.size() && have_same_ends(edges[begin], edges[end])) ++end;
+    for (std::size_t a = begin; a < end; ++a) {
+      for (std::size_t b = begin; b < end; ++b) {
+        if (edges[a].polygon != edges[b].polygon) visit(edges[a], edges[b]);
+      }
+    }
+  }
+}
+
+// From an edge into the face, perpendicular to the edge; unit.
+Vector way_in(const Outline& outline, const PlacedEdge& edge) {
+  const Vector along = edge.forward ? edge.last - edge.first : edge.first - edge.last;
+  return outline.normal.cross(along).normalized();
+}
+
+// Does a kept side of the first face see one of the second beyond their edge, at less than 150 degrees?
+bool sees(const PlacedEdge& a, const PlacedEdge& b, std::span<const Outline> outlines, const KeptSides& sides) {
+  const Outline& one = outlines[a.polygon];
+  const Outline& other = outlines[b.polygon];
+  const Vector into_one = way_in(one, a);
+  const Vector into_other = way_in(other, b);
+  if (into_one.dot(into_other) < -smooth_cosine) return false;
+  constexpr double flat = 1e-3;  // the sine of an angle at which two faces lie on each other
+  const auto is_kept = [&](std::uint32_t polygon, double height) {
+    return height > flat ? sides.front[polygon] != 0 : height < -flat && sides.back[polygon] != 0;
+  };
+  return is_kept(a.polygon, one.normal.dot(into_other)) && is_kept(b.polygon, other.normal.dot(into_one));
+}
+
+// Along an edge, from the end that comes first.
+Grading grading_along(const Outline& outline, const PlacedEdge& edge) {
+  const Grading grading = grading_of_edge(outline, edge.edge);
+  return edge.forward ? grading : Grading{grading.at_to, grading.at_from};
+}
+
+// Takes back what shrinks patches along an edge towards ends where the neighbour's do not. Is there any?
+bool even_out(Outline& outline, const PlacedEdge& edge, const Grading& neighbour) {
+  const Grading own = grading_along(outline, edge);
+  const auto clear = [&](bool at_first) {
+    outline.is_graded[(edge.edge + (edge.forward == at_first ? 3 : 1)) % 4] = 0;
+  };
+  const bool first = own.at_from && !neighbour.at_from;
+  const bool last = own.at_to && !neighbour.at_to;
+  if (first) clear(true);
+  if (last) clear(false);
+  return first || last;
+}
+
+// The same outlines, where those that become grids of quadrilaterals know towards which of their edges patches shrink:
+// edges that they share with a face they see there at less than 150 degrees (docs/theory/edges-and-contacts.md). Faces
+// that go on smoothly over a common edge have the same points there: where one of them cannot shrink its patches along
+// that edge, the other does not. O(n log n) for n edges, and O(n) for every face of a strip along which that goes on.
+std::vector<Outline> graded(std::vector<Outline> outlines, const KeptSides& sides) {
+  const std::vector<PlacedEdge> edges = placed_edges(outlines);
+  for (Outline& outline : outlines) {
+    if (is_quad_grid(outline)) outline.is_graded.assign(4, 0);
+  }
+  for_each_shared(edges, [&](const PlacedEdge& a, const PlacedEdge& b) {
+    Outline& outline = outlines[a.polygon];
+    if (!outline.is_graded.empty() && sees(a, b, outlines, sides)) outline.is_graded[a.edge] = 1;
+  });
+  for (bool changed = true; changed;) {
+    changed = false;
+    for_each_shared(edges, [&](const PlacedEdge& a, const PlacedEdge& b) {
+      const double cosine = outlines[a.polygon].normal.dot(outlines[b.polygon].normal);
+      if (std::abs(cosine) < smooth_cosine) return;
+      if (even_out(outlines[a.polygon], a, grading_along(outlines[b.polygon], b))) changed = true;
+    });
+  }
+  return outlines;
+}
+
+// The mesh's vertices on the boundaries of polygons.
+struct BoundaryVertices {
+  std::vector<Point> points;
+  std::vector<std::vector<std::uint32_t>> of_polygon;  // index into points, per polygon and boundary point
+};
+
+constexpr std::uint32_t none = ~std::uint32_t{0};
+
+// A surface that leaves another by less than this sine, a tenth of a degree, lies in it.
+constexpr double flat_sine = 2e-3;
+
+// OutlineCorners of all outlines are numbered through; an edge has the number of the corner where it begins.
+struct OutlineCorners {
+  std::vector<std::uint32_t> first;  // per polygon, one more at the end
+
+  std::uint32_t next(std::uint32_t polygon, std::uint32_t corner) const {
+    return corner + 1 == first[polygon + 1] ? first[polygon] : corner + 1;
+  }
+};
+
+struct OutlineEdge {
+  std::uint32_t low, high;  // places of its ends
+  MaterialIndex material;
+  std::uint32_t polygon, corner;
+  bool forward;  // traversed from low to high
+
+  auto place() const { return std::tuple(low, high, material); }
+};
+
+OutlineCorners count_corners(std::span<const Outline> outlines) {
+  OutlineCorners corners{.first = {0}};
+  for (const Outline& outline : outlines) {
+    corners.first.push_back(corners.first.back() + static_cast<std::uint32_t>(outline.corners.size()));
+  }
+  return corners;
+}
+
+// A number per corner, equal for corners at the same position.
+std::vector<std::uint32_t> weld(std::span<const Outline> outlines) {
+  std::vector<Point> points;
+  for (const Outline& outline : outlines) points.insert(points.end(), outline.corners.begin(), outline.corners.end());
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return comes_before(points[a], points[b]); });
+  std::vector<std::uint32_t> place(points.size());
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    place[order[k]] = place[order[k - 1]] + (points[order[k]] != points[order[k - 1]] ? 1 : 0);
+  }
+  return place;
+}
+
+std::vector<OutlineEdge> sorted_edges(const Scene& scene, const OutlineCorners& corners, Side side,
+                                      std::span<const std::uint8_t> kept, std::span<const std::uint32_t> place) {
+  std::vector<OutlineEdge> edges;
+  for (std::uint32_t p = 0; p < kept.size(); ++p) {
+    if (!kept[p]) continue;
+    const MaterialIndex material = material_on(scene.polygons[p], side);
+    for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
+      const std::uint32_t from = place[c];
+      const std::uint32_t to = place[corners.next(p, c)];
+      edges.push_back({std::min(from, to), std::max(from, to), material, p, c, from < to});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const OutlineEdge& a, const OutlineEdge& b) {
+    return std::tuple(a.place(), a.corner) < std::tuple(b.place(), b.corner);
+  });
+  return edges;
+}
+
+// The edges of all polygons, whichever of their sides are kept.
+class AllEdges {
+ public:
+  AllEdges(std::span<const Outline> outlines, const OutlineCorners& corners, std::span<const std::uint32_t> place)
+      : outlines_(outlines), corners_(corners) {
+    for (std::uint32_t p = 0; p < outlines.size(); ++p) {
+      for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
+        const auto [low, high] = std::minmax({place[c], place[corners.next(p, c)]});
+        edges_.push_back({low, high, p, c});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
+      return std::tuple(a.low, a.high, a.corner) < std::tuple(b.low, b.high, b.corner);
+    });
+  }
+
+  // Does a third polygon stand on the edge between two, on the side of them that is lit? A slab that ends at two walls,
+  // one above the other, parts the light of the storeys.
+  bool wall_between(const OutlineEdge& a, const OutlineEdge& b, Side side) const {
+    const double sign = side == Side::front ? 1 : -1;
+    const auto range = std::equal_range(edges_.begin(), edges_.end(), Edge{a.low, a.high, 0, 0}, before);
+    return std::any_of(range.first, range.second, [&](const Edge& edge) {
+      if (edge.polygon == a.polygon || edge.polygon == b.polygon) return false;
+      const Vector inward = inward_from(edge);
+      return sign * inward.dot(outlines_[a.polygon].normal) > flat_sine &&
+             sign * inward.dot(outlines_[b.polygon].normal) > flat_sine;
+    });
+  }
+
+ private:
+  struct Edge {
+    std::uint32_t low, high, polygon, corner;
+  };
+  static bool before(const Edge& a, const Edge& b) { return std::tuple(a.low, a.high) < std::tuple(b.low, b.high); }
+
+  // From an edge into its polygon, along its plane.
+  Vector inward_from(const Edge& edge) const {
+    const Outline& outline = outlines_[edge.polygon];
+    const std::uint32_t first = corners_.first[edge.polygon];
+    const Vector along =
+        outline.corners[corners_.next(edge.polygon, edge.corner) - first] - outline.corners[edge.corner - first];
+    return outline.normal.cross(along).normalized();
+  }
+
+  std::span<const Outline> outlines_;
+  const OutlineCorners& corners_;
+  std::vector<Edge> edges_;
+};
+
+// Per edge the edge of the smooth neighbour, or none.
+std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, std::span<const OutlineEdge> edges,
+                                             std::size_t corner_count, const AllEdges& all, Side side) {
+  std::vector<std::uint32_t> neighbour(corner_count, none);
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    while (end < edges.size() && edges[end].place() == edges[begin].place()) ++end;
+    if (end - begin != 2) continue;
+    const OutlineEdge& a = edges[begin];
+    const OutlineEdge& b = edges[begin + 1];
+    if (a.forward == b.forward) continue;
+    if (outlines[a.polygon].normal.dot(outlines[b.polygon].normal) <= smooth_cosine) continue;
+    if (all.wall_between(a, b, side)) continue;
+    neighbour[a.corner] = b.corner;
+    neighbour[b.corner] = a.corner;
+  }
+  return neighbour;
+}
+
+std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t corner) {
+  while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
+  return corner;
+}
+
+// Per corner the first of the corners it is united with.
+std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const std::uint32_t> neighbour) {
+  std::vector<std::uint32_t> next(neighbour.size());
+  for (std::uint32_t p = 0; p + 1 < corners.first.size(); ++p) {
+    for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) next[c] = corners.next(p, c);
+  }
+  std::vector<std::uint32_t> parent(neighbour.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax({root(parent, a), root(parent, b)});
+    parent[high] = low;
+  };
+  for (std::uint32_t c = 0; c < neighbour.size(); ++c) {
+    if (neighbour[c] == none) continue;
+    join(c, next[neighbour[c]]);
+    join(next[c], neighbour[c]);
+  }
+  for (std::uint32_t c = 0; c < parent.size(); ++c) parent[c] = root(parent, c);
+  return parent;
+}
+
+// Numbers the boundary points of this side of the kept polygons (kept[p] != 0). Two polygons share the points of a
+// common edge when they have one material, traverse the edge in opposite directions, are the only two of that material
+// there, their normals differ by less than 30 degrees, and no third polygon that has the same edge, from end to
+// end, rises from it on this side of them; the corners of such polygons are shared too. All other points are separate.
+// Positions are compared bit by bit.
+BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
+                                 std::span<const std::uint8_t> kept) {
+  BoundaryVertices result{.points = {}, .of_polygon = std::vector<std::vector<std::uint32_t>>(outlines.size())};
+  if (std::none_of(kept.begin(), kept.end(), [](std::uint8_t one) { return one != 0; })) return result;
+
+  // 1. Which edges and corners are shared.
+  const OutlineCorners corners = count_corners(outlines);
+  const std::vector<std::uint32_t> place = weld(outlines);
+  const std::vector<OutlineEdge> edges = sorted_edges(scene, corners, side, kept, place);
+  const std::vector<std::uint32_t> neighbour =
+      smooth_neighbours(outlines, edges, place.size(), AllEdges(outlines, corners, place), side);
+  const std::vector<std::uint32_t> shared = unite(corners, neighbour);
+
+  // 2. The first polygon at a corner or an edge makes the vertices; the others use them, on an edge in reverse order.
+  std::vector<std::uint32_t> corner_vertex(place.size(), none);
+  std::vector<std::uint32_t> edge_vertex(place.size(), none);
+  const auto size = [&] { return static_cast<std::uint32_t>(result.points.size()); };
+  for (std::uint32_t p = 0; p < outlines.size(); ++p) {
+    if (!kept[p]) continue;
+    const Outline& outline = outlines[p];
+    const std::vector<Point> points = boundary_points(outline);
+    std::size_t next_point = 0;
+    for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
+      std::uint32_t& vertex = corner_vertex[shared[c]];
+      if (vertex == none) vertex = size(), result.points.push_back(points[next_point]);
+      ++next_point;
+      result.of_polygon[p].push_back(vertex);
+      const std::uint32_t parts = outline.parts[c - corners.first[p]];
+      const bool made = neighbour[c] != none && edge_vertex[neighbour[c]] != none;
+      edge_vertex[c] = made ? edge_vertex[neighbour[c]] : size();
+      for (std::uint32_t i = 1; i < parts; ++i, ++next_point) {
+        if (!made) result.points.push_back(points[next_point]);
+        result.of_polygon[p].push_back(edge_vertex[c] + (made ? parts - 1 - i : i - 1));
+      }
+    }
+  }
+  return result;
+}
 
 // The polygons' own meshes, and where each kept side goes in the whole.
 struct Pieces {

@@ -7,7 +7,8 @@
 
 namespace patchlight {
 
-/// The relative errors that the last of the steps has reached; null without any. docs/output.md lists the keys.
+/// The relative errors that the last of the steps has reached; null without any. docs/reference/outputs/report-json.md
+/// lists the keys.
 nlohmann::ordered_json relative_errors(const std::vector<AccuracyStep>& steps);
 
 /// Those of the patches inside and outside closed shells with openings, where these divide them; else null.

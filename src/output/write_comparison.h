@@ -12,8 +12,8 @@ namespace patchlight {
 /// Writes a folder, whole or not at all: the table (compare.csv), every iteration of every solver (history.csv), both
 /// with the facts of the run (compare.json), the true error by iteration, by operator application and by second as
 /// plots
-/// (.svg and .png), and a series for ParaView per solver (SOLVER.pvd) where frames were kept. docs/output.md describes
-/// them. \throws OutputError, Cancelled.
+/// (.svg and .png), and a series for ParaView per solver (SOLVER.pvd) where frames were kept.
+/// docs/reference/outputs/studies.md describes them. \throws OutputError, Cancelled.
 void write_comparison(const std::filesystem::path& folder, const Scene& scene, const Comparison& comparison,
                       const Provenance& provenance, const Observer& observer = {});
 

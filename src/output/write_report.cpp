@@ -1,12 +1,11 @@
 #include "patchlight/output/write_result.h"
+#include "patchlight/report/report.h"
 
 #include "light/colour.h"
 #include "output/accuracy_json.h"
 #include "output/decisions_part.h"
 #include "output/json_array.h"
 #include "output/report_json.h"
-#include "output/rooms_part.h"
-#include "output/sensors_part.h"
 #include "output/write_bytes.h"
 
 #include <nlohmann/json.hpp>
@@ -14,6 +13,59 @@
 
 namespace patchlight {
 namespace {
+
+// What sensors read, group by group, as a part of the report.
+nlohmann::ordered_json sensors_part(const SensorFacts& sensors) {
+  using Json = nlohmann::ordered_json;
+  Json part;
+  part["unit"] = sensors.unit;
+  part["groups"] = Json::array();
+  for (const GroupReadings& group : sensors.groups) {
+    Json entry;
+    entry["name"] = group.name;
+    entry["sensors"] = group.sensors;
+    entry["inside_walls"] = group.inside_walls;
+    entry["min"] = group.min;
+    entry["mean"] = group.mean;
+    entry["standard_error_of_mean"] = group.standard_error_of_mean;
+    entry["max"] = group.max;
+    entry["uniformity"] = group.uniformity;
+    entry["largest_standard_error"] = group.largest_standard_error;
+    if (group.mean_daylight_factor) entry["mean_daylight_factor_percent"] = *group.mean_daylight_factor;
+    part["groups"].push_back(std::move(entry));
+  }
+  part["warnings"] = sensors.warnings;
+  return part;
+}
+
+constexpr auto note_on_coarse =
+    "min and uniformity of a surface that is coarse may be too high, as dark patches of it are larger than the cells "
+    "of a "
+    "grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight init writes "
+    "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
+
+// What floor, walls and ceiling of each room get, as a part of the report.
+nlohmann::ordered_json rooms_part(const Report& report) {
+  using Json = nlohmann::ordered_json;
+  Json part;
+  part["unit"] = report.unit;
+  part["rooms"] = Json::array();
+  for (const RoomLight& room : report.rooms) {
+    Json entry;
+    entry["name"] = room.name;
+    for (const SurfaceLight& surface : room.surfaces) {
+      if (surface.area == 0) continue;
+      entry[name_of(surface.surface)] = {{"area_m2", surface.area},
+                                         {"min", surface.min},
+                                         {"mean", surface.mean},
+                                         {"uniformity", surface.uniformity},
+                                         {"coarse", surface.is_coarse}};
+      if (surface.is_coarse) part["note"] = note_on_coarse;
+    }
+    part["rooms"].push_back(std::move(entry));
+  }
+  return part;
+}
 
 // Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;

@@ -1,25 +1,157 @@
 #include "output/write_sensor_map.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/sensor.h"
 
+#include "base/shortest.h"
 #include "output/isolines.h"
 #include "output/map_axes.h"
-#include "output/map_marks.h"
 #include "output/plot_text.h"
 #include "output/plot_ticks.h"
-#include "output/sensor_lattice.h"
 #include "output/write_drawing.h"
+#include "render/tone_map.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cairo.h>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace patchlight {
 namespace {
+
+// The lattice that the cells of a grid lie on.
+struct SensorLattice {
+  Eigen::MatrixXd values;  // not a number where there is no sensor; none where the sensors lie on no lattice
+  Point origin;            // of column and row 0
+  Vector step, step_of_rows;
+};
+
+// That of a grid whose first cell is this.
+SensorLattice lattice_of(const std::vector<Sensor>& sensors, const std::array<Point, 4>& cell,
+                         const std::vector<double>& values) {
+  SensorLattice lattice{{}, sensors[0].point, cell[1] - cell[0], cell[3] - cell[0]};
+  const auto place = [&](const Point& point) -> Eigen::Vector2d {
+    const Vector way = point - lattice.origin;
+    return {way.dot(lattice.step) / lattice.step.squaredNorm(),
+            way.dot(lattice.step_of_rows) / lattice.step_of_rows.squaredNorm()};
+  };
+  Eigen::Vector2d low(0, 0), high(0, 0);
+  for (const Sensor& sensor : sensors) {
+    low = low.cwiseMin(place(sensor.point));
+    high = high.cwiseMax(place(sensor.point));
+  }
+  const Eigen::Vector2d size = (high - low).array().round() + 1;
+  // More places than a file can show: cells of several sizes, or not in one plane
+  if (!(size.prod() < 100.0 * static_cast<double>(sensors.size()) + 1000)) return lattice;
+  lattice.values = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(size[1]), static_cast<Eigen::Index>(size[0]),
+                                             std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < sensors.size(); ++k) {
+    const Eigen::Vector2d at = (place(sensors[k].point) - low).array().round();
+    lattice.values(static_cast<Eigen::Index>(at[1]), static_cast<Eigen::Index>(at[0])) = values[k];
+  }
+  lattice.origin += low[0] * lattice.step + low[1] * lattice.step_of_rows;
+  return lattice;
+}
+
+// A rectangle of the drawing: its upper left corner, and its size.
+struct PixelArea {
+  Pixel corner;
+  double width = 0;
+  double height = 0;
+};
+
+constexpr double ink = 0.1;  // grey of lines and texts
+
+bool meets(const PixelArea& area, const std::array<Pixel, 2>& line) {
+  const auto [left, right] = std::minmax(line[0].x, line[1].x);
+  const auto [top, bottom] = std::minmax(line[0].y, line[1].y);
+  return right >= area.corner.x && left <= area.corner.x + area.width && bottom >= area.corner.y &&
+         top <= area.corner.y + area.height;
+}
+
+// The largest of 1, 2 and 5 times a power of ten that is not above.
+double round_below(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  return (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1) * power;
+}
+
+// Sets the false colour of a value.
+void set_false_colour(cairo_t* cairo, double value, const AxisRange& range) {
+  const auto colour = false_color(Eigen::VectorXd::Constant(1, value), range.lower, range.upper)[0];
+  cairo_set_source_rgb(cairo, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
+}
+
+// Draws the bar of false colours with labels at these ticks.
+void draw_colours(cairo_t* cairo, const PixelArea& bar, const AxisRange& range, std::span<const Tick> ticks) {
+  constexpr int steps = 128;
+  constexpr double gap = 8;
+  for (int k = 0; k < steps; ++k) {
+    set_false_colour(cairo, range.upper - (k + 0.5) / steps * (range.upper - range.lower), range);
+    cairo_rectangle(cairo, bar.corner.x, bar.corner.y + k * bar.height / steps, bar.width, bar.height / steps + 0.5);
+    cairo_fill(cairo);
+  }
+  cairo_set_source_rgb(cairo, ink, ink, ink);
+  for (const Tick& tick : ticks) {
+    const double y = bar.corner.y + bar.height * (1 - place_on_axis(tick.value, range, Scale::linear));
+    draw_label(cairo, {bar.corner.x + bar.width + gap, y}, tick, Align::left);
+  }
+}
+
+// Draws what of these lines lies in the area.
+void draw_walls(cairo_t* cairo, const PixelArea& area, std::span<const std::array<Pixel, 2>> walls) {
+  cairo_save(cairo);
+  cairo_rectangle(cairo, area.corner.x, area.corner.y, area.width, area.height);
+  cairo_clip(cairo);
+  cairo_set_source_rgb(cairo, ink, ink, ink);
+  cairo_set_line_width(cairo, 1.5);
+  for (const std::array<Pixel, 2>& line : walls) {
+    if (!meets(area, line)) continue;
+    cairo_move_to(cairo, line[0].x, line[0].y);
+    cairo_line_to(cairo, line[1].x, line[1].y);
+  }
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+}
+
+// Draws an arrow upwards with an N, its right end halfway up at `at`.
+void draw_north(cairo_t* cairo, const Pixel& at) {
+  constexpr double half_length = 7, half_width = 3, head = 6;
+  const double x = at.x - half_width, top = at.y - half_length;
+  cairo_set_source_rgb(cairo, ink, ink, ink);
+  cairo_set_line_width(cairo, 1);
+  cairo_move_to(cairo, x, at.y + half_length);
+  cairo_line_to(cairo, x, top);
+  cairo_stroke(cairo);
+  cairo_move_to(cairo, x, top);
+  cairo_line_to(cairo, x + half_width, top + head);
+  cairo_line_to(cairo, x - half_width, top + head);
+  cairo_close_path(cairo);
+  cairo_fill(cairo);
+  draw_text(cairo, {x - 2 * half_width, at.y}, "N", Align::right);
+}
+
+// Draws a bar of a round number of metres from `at` to the right, `most` pixels at most, with its length.
+void draw_scale_bar(cairo_t* cairo, const Pixel& at, double pixels_per_metre, double most) {
+  constexpr double end = 4, gap = 8;  // half the height of the bar's ends
+  const double metres = round_below(most / pixels_per_metre);
+  const double right = at.x + metres * pixels_per_metre;
+  cairo_set_source_rgb(cairo, ink, ink, ink);
+  cairo_set_line_width(cairo, 1.5);
+  cairo_move_to(cairo, at.x, at.y - end);
+  cairo_line_to(cairo, at.x, at.y + end);
+  cairo_move_to(cairo, at.x, at.y);
+  cairo_line_to(cairo, right, at.y);
+  cairo_move_to(cairo, right, at.y - end);
+  cairo_line_to(cairo, right, at.y + end);
+  cairo_stroke(cairo);
+  draw_text(cairo, {right + gap, at.y}, shortest(metres) + " m", Align::left);
+}
 
 // All lengths in pixels.
 constexpr double map_edge = 24;

@@ -10,8 +10,8 @@ namespace patchlight {
 
 /// Writes a folder, whole or not at all: a row per setting (study.csv), the same with the reference, the prices and the
 /// conclusion (study.json), and plots (.svg and .png) of the error against CPU seconds and against the memory of the
-/// form factors, with the Pareto front, and of what estimators of form factors err by themselves. docs/output.md
-/// describes them. \throws OutputError.
+/// form factors, with the Pareto front, and of what estimators of form factors err by themselves.
+/// docs/reference/outputs/studies.md describes them. \throws OutputError.
 void write_study(const std::filesystem::path& folder, const Scene& scene, const Study& study,
                  const Provenance& provenance);
 

@@ -8,7 +8,7 @@
 
 namespace patchlight {
 
-/// The outcome of a validation as JSON. docs/output.md lists the keys.
+/// The outcome of a validation as JSON. docs/reference/outputs/report-json.md lists the keys.
 std::string validation_json(std::span<const ValidationResult> results);
 
 /// The same as a file. \throws OutputError.

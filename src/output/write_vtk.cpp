@@ -16,7 +16,7 @@
 namespace patchlight {
 namespace {
 
-// The unit of every array of values; docs/output.md says what they mean.
+// The unit of every array of values; docs/reference/outputs/vtp.md says what they mean.
 constexpr std::array<std::array<const char*, 2>, 25> units_of_arrays = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},

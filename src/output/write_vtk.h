@@ -13,8 +13,8 @@ namespace patchlight {
 /// sRGB); with error bars error_mesh, error_form_factor, error_solver, error_total, display_error, error_irradiance,
 /// else error_solver where it is known. Point array: radiance_smooth. FieldData: the unit of every array, material
 /// names, version, command line, seed, SHA-256 of the input, exposure, convergence history, relative errors, seconds
-/// per stage. docs/output.md lists them all. A file whose name ends in .vtu gets an unstructured grid with the same
-/// arrays, compressed with zlib, and of the facts those that are numbers. \throws OutputError.
+/// per stage. docs/reference/outputs/vtp.md lists them all. A file whose name ends in .vtu gets an unstructured grid
+/// with the same arrays, compressed with zlib, and of the facts those that are numbers. \throws OutputError.
 void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 }  // namespace patchlight

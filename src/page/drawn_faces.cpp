@@ -20,9 +20,17 @@ struct DrawnSide {
   double scatter = 0;  // integral of the squared difference of luminance from the mean
   bool whole = false;  // the polygon in place of its patches
 
+  bool is_covered = false;  // wholly
+
   std::size_t size() const { return patches.end - patches.begin; }
   std::size_t saving() const { return size() > triangles ? size() - triangles : 0; }
 };
+
+// Does no part of a patch lie free? Its exposed area is then rounding.
+bool is_covered(const Simulation& simulation, PatchIndex patch) {
+  constexpr double least_exposed = 1e-6;
+  return simulation.problem.area[patch] <= least_exposed * simulation.mesh.area[patch];
+}
 
 DrawnSide drawn_side(const SolvedSurface& surface, const PatchRange& patches) {
   const PatchMesh& mesh = surface.simulation.mesh;
@@ -30,9 +38,11 @@ DrawnSide drawn_side(const SolvedSurface& surface, const PatchRange& patches) {
   const Bands bands = bands_of(surface.scene);
   DrawnSide side{patches, surface.scene.polygons[mesh.polygon[patches.begin]].corners.size() - 2};
   double sum = 0, squares = 0;
+  side.is_covered = true;
   for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) {
     const double value = luminance(radiosity.row(patch), bands);
     side.area += mesh.area[patch];
+    side.is_covered = side.is_covered && is_covered(surface.simulation, patch);
     sum += mesh.area[patch] * value;
     squares += mesh.area[patch] * value * value;
   }
@@ -69,8 +79,13 @@ std::vector<DrawnSide> thinned(std::vector<DrawnSide> sides, std::size_t faces, 
   return sides;
 }
 
-void draw_patches(DrawnFaces& drawn, const PatchMesh& mesh, const PatchRange& patches) {
+void draw_patches(DrawnFaces& drawn, const Simulation& simulation, const PatchRange& patches) {
+  const PatchMesh& mesh = simulation.mesh;
   for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) {
+    if (is_covered(simulation, patch)) {
+      ++drawn.covered;
+      continue;
+    }
     drawn.row.push_back(static_cast<std::uint32_t>(drawn.patches.size()));
     drawn.patches.push_back({patch, patch + 1});
     drawn.corners.push_back(mesh.corners[patch]);
@@ -124,17 +139,23 @@ DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_
   drawn.vertices = mesh.vertices;
   drawn.colours = tone_map(surface.radiance_at_vertices, exposure, bands_of(surface.scene));
   if (mesh.size() <= most) {
-    draw_patches(drawn, mesh, {0, mesh.size()});
-    return drawn;
+    draw_patches(drawn, surface.simulation, {0, mesh.size()});
+    return drawn.covered == 0 ? drawn : without_unused(std::move(drawn));
   }
-  std::vector<DrawnSide> sides = thinned(all_sides(surface), mesh.size(), most);
+  std::vector<DrawnSide> sides = all_sides(surface);
+  std::size_t faces = mesh.size();
+  std::erase_if(sides, [&](const DrawnSide& side) {
+    if (side.is_covered) drawn.covered += side.size(), faces -= side.size();
+    return side.is_covered;
+  });
+  sides = thinned(std::move(sides), faces, most);
   std::sort(sides.begin(), sides.end(),
             [](const DrawnSide& a, const DrawnSide& b) { return a.patches.begin < b.patches.begin; });
-  drawn.left_out = mesh.size();
+  drawn.left_out = faces;
   for (const DrawnSide& side : sides) {
     drawn.left_out -= side.size();
     if (side.whole) draw_whole(drawn, surface, side, exposure);
-    if (!side.whole) draw_patches(drawn, mesh, side.patches);
+    if (!side.whole) draw_patches(drawn, surface.simulation, side.patches);
   }
   return without_unused(std::move(drawn));
 }

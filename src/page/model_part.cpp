@@ -5,7 +5,10 @@
 #include "page/drawn_faces.h"
 #include "page/looks.h"
 #include "page/packed.h"
+#include "scene/shells.h"
+#include "scene/solids.h"
 #include "solve/scattering.h"
+#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,11 +117,68 @@ Json values_part(const SolvedSurface& surface, const RowMeans& means) {
   return part;
 }
 
-// Per row: its patch or the first of them, how many they are, their area, and what they are made of.
+std::size_t slot_of(PolygonIndex polygon, Side side) { return 2 * std::size_t{polygon} + static_cast<std::size_t>(side); }
+
+// How many faces lie one on the other over a side of a polygon, at 2 * polygon + side: 0 where none does, and at most
+// `deepest`. Empty where nothing overlaps.
+std::vector<std::uint8_t> layers_of(const SolvedSurface& surface) {
+  constexpr std::uint8_t deepest = 7;
+  const Coverings& coverings = surface.simulation.tracing->coverings();
+  std::vector<std::uint8_t> layers(coverings.over.size(), 0);
+  const auto normal = [&](PolygonIndex polygon) { return area_vector(corner_points(surface.scene, polygon)); };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t slot = 0; slot < layers.size(); ++slot) {
+      const auto polygon = static_cast<PolygonIndex>(slot / 2);
+      for (const PolygonIndex upper : coverings.over[slot]) {
+        const bool is_front = (slot % 2 == 0) == (normal(polygon).dot(normal(upper)) > 0);
+        const std::uint8_t below = layers[slot_of(upper, is_front ? Side::front : Side::back)];
+        if (layers[slot] > below || layers[slot] == deepest) continue;
+        layers[slot] = static_cast<std::uint8_t>(below + 1);
+        changed = true;
+      }
+    }
+  }
+  return layers;
+}
+
+// At 2 * polygon + side 1 for the sides that face the inside of a closed solid: these show where it is cut.
+std::vector<std::uint8_t> sides_in_solids(const Scene& scene) {
+  const Shells shells = shells_of(scene);
+  return inner_sides(scene, shells, closed_solids(scene, shells));
+}
+
+// At 1 the patches that no light gets to, nor comes from, as between walls.
+std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
+  constexpr double nothing = 1e-12;
+  const PatchMesh& mesh = surface.simulation.mesh;
+  const Solution& solution = surface.simulation.solution;
+  const bool knows_irradiance = solution.irradiance.rows() == solution.radiosity.rows();
+  const auto is_black = [&](PatchIndex patch) {
+    return !(surface.scene.materials[mesh.material[patch]].reflectance > 0).any();
+  };
+  std::vector<std::uint8_t> dark(mesh.size(), 0);
+  const double least = nothing * solution.radiosity.maxCoeff();
+  const double least_irradiance = knows_irradiance ? nothing * solution.irradiance.maxCoeff() : 0;
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
+    if ((solution.radiosity.row(patch) > least).any()) continue;
+    // A stored solution has radiances alone, and a black surface has none where light gets to it.
+    const bool is_lit =
+        knows_irradiance ? (solution.irradiance.row(patch) > least_irradiance).any() : is_black(patch);
+    dark[patch] = is_lit ? 0 : 1;
+  }
+  return dark;
+}
+
+// Per row: its patch or the first of them, how many they are, their area, and what they are made of. `layer` counts the
+// faces that lie over it, `filled` is 1 before a closed solid, and `dark` is 1 where there is no light.
 Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
   const PatchMesh& mesh = surface.simulation.mesh;
   std::vector<std::uint32_t> first, count, face, material, group;
-  std::vector<std::uint8_t> side, enclosed;
+  std::vector<std::uint8_t> side, enclosed, layer, dark, filled;
+  const std::vector<std::uint8_t> layers = layers_of(surface);
+  const std::vector<std::uint8_t> inner = sides_in_solids(surface.scene);
+  const std::vector<std::uint8_t> dark_patch = dark_patches(surface);
   std::vector<float> areas;
   const Eigen::VectorXd& holds_light = surface.simulation.enclosed;
   for (const PatchRange& range : drawn.patches) {
@@ -136,6 +196,11 @@ Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
     group.push_back(polygon.group);
     material.push_back(mesh.material[range.begin]);
     side.push_back(static_cast<std::uint8_t>(mesh.side[range.begin]));
+    const std::size_t slot = slot_of(mesh.polygon[range.begin], mesh.side[range.begin]);
+    layer.push_back(layers.empty() ? 0 : layers[slot]);
+    filled.push_back(inner[slot ^ 1U]);
+    const auto dark_from = dark_patch.begin() + range.begin, dark_to = dark_patch.begin() + range.end;
+    dark.push_back(std::find(dark_from, dark_to, 0) == dark_to ? 1 : 0);
   }
   Json part = {{"patch", packed_array<std::uint32_t>(first, 1)},
                {"patches", packed_array<std::uint32_t>(count, 1)},
@@ -143,7 +208,10 @@ Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
                {"source_polygon", packed_array<std::uint32_t>(face, 1)},
                {"group_id", packed_array<std::uint32_t>(group, 1)},
                {"material_id", packed_array<std::uint32_t>(material, 1)},
-               {"side", packed_array<std::uint8_t>(side, 1)}};
+               {"side", packed_array<std::uint8_t>(side, 1)},
+               {"layer", packed_array<std::uint8_t>(layer, 1)},
+               {"filled", packed_array<std::uint8_t>(filled, 1)},
+               {"dark", packed_array<std::uint8_t>(dark, 1)}};
   if (holds_light.size() > 0) part["enclosed"] = packed_array<std::uint8_t>(enclosed, 1);
   return part;
 }
@@ -182,6 +250,7 @@ Json model_part(const SolvedSurface& surface, double exposure, std::size_t most_
   part["patches"] = surface.simulation.mesh.size();
   part["faces"] = drawn.corners.size();
   part["patches_left_out"] = drawn.left_out;
+  part["patches_covered"] = drawn.covered;
   part["up"] = json_array(surface.scene.up);
   part["photometric"] = surface.scene.photometric;
   part["bands"] = Json::array();

@@ -1,20 +1,172 @@
 #include "pipeline/light_colours.h"
 
 #include "accuracy/interest.h"
-#include "pipeline/joined_colours.h"
+#include "light/photometry.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
+#include "pipeline/problem_of.h"
 #include "pipeline/second_mesh.h"
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// Columns of all bands from those of some.
+struct IntoBands {
+  const std::vector<Eigen::Index>& bands;
+  Eigen::Index all;
+
+  void put(Field& into, const Field& from) const {
+    if (from.size() == 0) return;
+    if (into.size() == 0) into = Field::Zero(from.rows(), all);
+    for (Eigen::Index k = 0; k < from.cols(); ++k) into.col(bands[static_cast<std::size_t>(k)]) = from.col(k);
+  }
+  void put(Eigen::ArrayXd& into, const Eigen::ArrayXd& from) const {
+    if (into.size() == 0) into = Eigen::ArrayXd::Zero(all);
+    for (Eigen::Index k = 0; k < from.size(); ++k) into[bands[static_cast<std::size_t>(k)]] = from[k];
+  }
+};
+
+void put_problem(RadiosityProblem& into, const RadiosityProblem& from, const IntoBands& bands) {
+  into.scattering.other_side = from.scattering.other_side;
+  bands.put(into.scattering.reflectance, from.scattering.reflectance);
+  bands.put(into.scattering.transmittance, from.scattering.transmittance);
+  bands.put(into.exitance, from.exitance);
+  bands.put(into.direct_irradiance, from.direct_irradiance);
+}
+
+Iteration worst(Iteration a, const Iteration& b) {
+  a.number = std::max(a.number, b.number);
+  a.relative_residual = std::max(a.relative_residual, b.relative_residual);
+  a.error_bound = std::max(a.error_bound, b.error_bound);
+  a.seconds += b.seconds;
+  a.work = std::max(a.work, b.work);
+  return a;
+}
+
+// Step by step; what has ended stays as it is.
+std::vector<Iteration> worst(std::vector<Iteration> a, const std::vector<Iteration>& b) {
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
+  const std::size_t steps = std::max(a.size(), b.size());
+  a.resize(steps, a.back());
+  for (std::size_t k = 0; k < steps; ++k) a[k] = worst(a[k], b[std::min(k, b.size() - 1)]);
+  return a;
+}
+
+void put_solution(Solution& into, const Solution& from, const IntoBands& bands, bool is_first) {
+  bands.put(into.radiosity, from.radiosity);
+  bands.put(into.irradiance, from.irradiance);
+  bands.put(into.direct_irradiance, from.direct_irradiance);
+  bands.put(into.error, from.error);
+  into.history = worst(std::move(into.history), from.history);
+  into.converged = from.converged && (is_first || into.converged);
+  into.stopped = into.stopped || from.stopped;
+  if (into.trapped.empty()) into.trapped = from.trapped;
+  into.patch_bound = is_first ? from.patch_bound : std::max(into.patch_bound, from.patch_bound);
+}
+
+void put_balance(EnergyBalance& into, const EnergyBalance& from, const IntoBands& bands) {
+  bands.put(into.emitted, from.emitted);
+  bands.put(into.arriving, from.arriving);
+  bands.put(into.absorbed, from.absorbed);
+  bands.put(into.escaped, from.escaped);
+  bands.put(into.lost_at_backs, from.lost_at_backs);
+  bands.put(into.defect, from.defect);
+  into.imbalance = std::max(into.imbalance, from.imbalance);
+}
+
+void put_bars(std::optional<ErrorBars>& into, const std::optional<ErrorBars>& from, const IntoBands& bands) {
+  if (!from) return;
+  if (!into) into.emplace();
+  bands.put(into->mesh, from->mesh);
+  bands.put(into->mesh_noise, from->mesh_noise);
+  bands.put(into->form_factor, from->form_factor);
+  bands.put(into->solver, from->solver);
+  bands.put(into->display, from->display);
+}
+
+void add(Eigen::VectorXd& sum, double weight, const Eigen::VectorXd& part) {
+  if (part.size() == 0) return;
+  if (sum.size() == 0) sum = Eigen::VectorXd::Zero(part.size());
+  sum += weight * part;
+}
+
+// What has one number per patch.
+void add_facts(TransportFacts& sum, double weight, const TransportFacts& part) {
+  add(sum.row_sum, weight, part.row_sum);
+  add(sum.lost.escaped, weight, part.lost.escaped);
+  add(sum.lost.at_backs, weight, part.lost.at_backs);
+  add(sum.lost.covered, weight, part.lost.covered);
+  add(sum.lost.dark, weight, part.lost.dark);
+  add(sum.lost.overlaid, weight, part.lost.overlaid);
+  sum.lost.rays_per_patch = part.lost.rays_per_patch;
+  sum.lost.doublings = part.lost.doublings;
+  sum.counts.shadow_rays += part.counts.shadow_rays;
+  sum.closure = part.closure;
+}
+
+void add_effects(SolvedMesh& sum, const SolvedMesh& part) {
+  sum.interest = part.interest;
+  add(sum.effects, 1, part.effects);
+  add(sum.noise, 1, part.noise);
+  add(sum.row_noise, 1, part.row_noise);
+  add(sum.light_noise, 1, part.light_noise);
+  sum.share_cuts_mend = std::max(sum.share_cuts_mend, part.share_cuts_mend);
+  sum.noise_bar = std::max(sum.noise_bar, part.noise_bar);
+  sum.light_bar = std::max(sum.light_bar, part.light_bar);
+}
+
+double luminous_weight(const Spectrum& shares, const std::vector<Eigen::Index>& of) {
+  double weight = 0;
+  for (const Eigen::Index band : of) weight += shares[band];
+  return weight;
+}
+
+// The solution in all bands of a run from those in each colour, one each: columns next to each other; of what has one
+// number for all bands the mean by luminance, of errors and counts of iterations the worst.
+SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
+                  std::vector<SolvedMesh> parts) {
+  SolvedMesh all{{}, meshed.mesh};
+  Simulation& into = all.simulation;
+  into.plan = meshed.plan;
+  into.notes = run.notes;
+  into.mesh = meshed.mesh.patches;
+  into.tracing = run.tracing;
+  into.enclosed = parts.front().simulation.enclosed;
+  const Bands bands = bands_of(run.scene);
+  const Spectrum shares = luminous_shares(bands);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    add_effects(all, parts[k]);
+    // Whole patches have the same area in all colours, what they hold of them has not.
+    const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].scene);
+    const IntoBands columns{colours[k].bands, static_cast<Eigen::Index>(bands.size())};
+    const double weight = luminous_weight(shares, colours[k].bands);
+    put_problem(into.problem, part.problem, columns);
+    add(into.problem.area, weight, part.problem.area);
+    put_solution(into.solution, part.solution, columns, k == 0);
+    put_balance(into.balance, part.balance, columns);
+    put_bars(into.error_bars, part.error_bars, columns);
+    columns.put(into.direct_standard_error, part.direct_standard_error);
+    columns.put(into.ray_standard_error, part.ray_standard_error);
+    into.correlated_errors.resize(std::max(into.correlated_errors.size(), part.correlated_errors.size()));
+    for (std::size_t draw = 0; draw < part.correlated_errors.size(); ++draw)
+      columns.put(into.correlated_errors[draw], part.correlated_errors[draw]);
+    add_facts(into.transport, weight, part.transport);
+    const double tolerance = part.plan.solver.relative_error.value_or(default_tolerance);
+    into.plan.solver.relative_error = k == 0 ? tolerance : std::min(tolerance, *into.plan.solver.relative_error);
+  }
+  into.transport.lost.clear = clear_shares(into.mesh, run.tracing->between_patches());
+  all.simulation = of_held_parts(std::move(all.simulation), run.scene);
+  return all;
+}
 
 // The spectra of all that is clear or a mirror.
 std::vector<Spectrum> specular_spectra(const Scene& scene, Reflections reflections) {

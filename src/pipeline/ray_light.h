@@ -24,8 +24,8 @@ struct RaySolution {
 };
 
 /// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
-/// half of the rays, and smooths the light from other patches: docs/theory.md section 12. The error combines the
-/// difference of the halves, the error of the row sums, which both halves share, the bias of smoothing, and the
+/// half of the rays, and smooths the light from other patches: docs/theory/ray-method-solution.md. The error combines
+/// the difference of the halves, the error of the row sums, which both halves share, the bias of smoothing, and the
 /// reflections of all of these. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
                             const RayLight& light, const TransportFacts& facts, const SolverOptions& options);

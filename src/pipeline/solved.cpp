@@ -1,17 +1,89 @@
 #include "pipeline/solved.h"
 
+#include "patchlight/accuracy/error_bars.h"
+#include "patchlight/solve/problem.h"
+#include "patchlight/transport/lost_share.h"
+
 #include "accuracy/enclosed.h"
+#include "accuracy/errors.h"
 #include "base/vectors.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/notes_on_run.h"
-#include "pipeline/solve_for_interest.h"
-#include "solve/energy.h"
+#include "pipeline/relative_errors.h"
+#include "pipeline/run.h"
+#include "solve/scattering.h"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+// Solves with some options.
+using Solve = std::function<Solution(const SolverOptions& options)>;
+
+// A solution and the relative error that was asked of the solver.
+struct SolvedWith {
+  Solution solution;
+  double relative_error = 0;
+};
+
+// Asked for so much less than is needed, as the bound of a patch does not fall evenly with the residual.
+constexpr double bar_margin = 0.5;
+
+// In one step no farther than this.
+constexpr double farthest = 1e-4;
+
+// Nearer than this to rounding no solver gets.
+constexpr double least_error = 1e-12;
+
+// The solution by some options, or with a smaller relative error than these ask for until the solver's part of the
+// error of what is of interest is no more than AccuracyOptions::solver_part: a bound on all light together says little
+// about the light in a dim room. Ends with the last one that has converged. `simulation` has the plan, the problem and
+// the mesh.
+SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
+                              const Solve& solve) {
+  SolverOptions options = by;
+  SolvedWith best{solve(options), tolerance_of(options)};
+  const std::optional<double>& part = simulation.plan.accuracy.solver_part;
+  if (!part || !best.solution.converged) return best;
+  const Eigen::VectorXd interest = interest_in(run.scene, simulation);
+  for (;;) {
+    const SolvedProblem solved{simulation.problem, best.solution};
+    const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);
+    // What is infinite has no bound, or no light: no tolerance mends that.
+    if (!(left > *part) || !std::isfinite(left) || best.relative_error <= least_error) return best;
+    options.relative_error = std::max(least_error, best.relative_error * std::max(farthest, bar_margin * *part / left));
+    Solution next = solve(options);
+    if (!next.converged) return best;
+    best = {std::move(next), tolerance_of(options)};
+  }
+}
+
+// Where the light of a solution goes. `row_sum` is sum_j F_ij of the transport that was solved with.
+EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& solution, const Eigen::VectorXd& row_sum,
+                             const LostShare& lost) {
+  const auto flux = [&](const Field& x) { return area_sum(x, problem.area); };
+  const Field& B = solution.radiosity;
+  const Field& H = solution.irradiance;
+
+  EnergyBalance balance;
+  balance.emitted = flux(problem.exitance);
+  balance.arriving = Eigen::ArrayXd::Zero(balance.emitted.size());
+  if (problem.direct_irradiance.size() > 0) balance.arriving = flux(problem.direct_irradiance);
+  balance.absorbed = flux(absorb(problem.scattering, H));
+  balance.escaped = flux(B.colwise() * lost.escaped.array());
+  balance.lost_at_backs = flux(B.colwise() * lost.at_backs.array());
+  // What leaves a patch and arrives at no other, beyond the measured lost share.
+  balance.defect = flux(B.colwise() * (1 - row_sum.array() - lost.escaped.array() - lost.at_backs.array()));
+  const Eigen::ArrayXd all = balance.emitted + balance.arriving;
+  const Eigen::ArrayXd left = all - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
+  balance.imbalance = largest((all > 0).select(left.abs() / all, 0.0));
+  return balance;
+}
 
 // No light is negative. Iterations leave patches slightly below 0 where hardly any light arrives: that is their error.
 Solution without_negative_light(Solution solution, const RadiosityProblem& problem) {

@@ -1,32 +1,83 @@
 #include "pipeline/with_error_bars.h"
 
+#include "patchlight/transport/transport_operator.h"
+
 #include "accuracy/errors.h"
 #include "accuracy/errors_within_parents.h"
 #include "accuracy/interest.h"
 #include "accuracy/needed_bands.h"
 #include "accuracy/refinement.h"
+#include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
+#include "mesh/kept_patches.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/refine.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/relative_errors.h"
+#include "pipeline/run.h"
 #include "pipeline/second_mesh.h"
-#include "pipeline/unseen_differences_of.h"
+#include "plan/goal.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
 #include "transport/on_demand.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// Light straight from sources at the quarters of patches, in the needed bands. Only differences within a patch count:
+// those of patches below a sixty-fourth of the mean area of the goal's are taken as 0. (With a sixteenth, those of
+// frames and sills of windows would be missing.)
+std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
+                                        const QuarterLook& look) {
+  const PatchMesh& mesh = simulation.mesh;
+  const double least_area = mean_area_of_goal(mesh, simulation.plan.goal.get()) / 64;
+  std::vector<std::uint8_t> is_left_out;
+  for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
+  PatchMesh all = refine(mesh);
+  all.middles.clear();  // which belong to edges, of which light knows nothing
+  const PatchMesh quarters = without_patches(all, is_left_out);
+  std::array<Field, 2> direct;
+  for (std::size_t half = 0; half < direct.size(); ++half) {
+    const Field found =
+        reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), look.rays), bands);
+    direct[half] = Field::Zero(static_cast<Eigen::Index>(is_left_out.size()), found.cols());
+    Eigen::Index next = 0;
+    for (std::size_t q = 0; q < is_left_out.size(); ++q)
+      if (is_left_out[q] == 0) direct[half].row(static_cast<Eigen::Index>(q)) = found.row(next++);
+  }
+  return direct;
+}
+
+// unseen_differences() of a simulation, those of the light of luminaires, sun and sky among them, in all bands;
+// `needed` is the simulation in those that differ, and `rays` start at each quarter of a patch in each half.
+// Throws Cancelled.
+UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const InNeededBands& needed,
+                                        const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
+  QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
+  if (has_point_or_daylight(run.scene)) look.direct = direct_at_quarters(run, simulation, needed.bands, look);
+  const Occluder& occluder = run.tracing->between_patches();
+  const SolvedProblem solved = needed.solved();
+  UnseenDifferences unseen = unseen_differences({simulation.mesh, occluder, simulation.transport.lost, solved},
+                                                transport, weight, look, run.observer);
+  unseen.error = expanded(unseen.error, needed.bands);
+  unseen.noise = expanded(unseen.noise, needed.bands);
+  unseen.display = expanded(unseen.display, needed.bands);
+  return unseen;
+}
 
 // Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
 // patches, for the sake of time: the mean over the patches around takes the noise away.

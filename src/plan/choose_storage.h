@@ -8,12 +8,12 @@
 namespace patchlight {
 
 /// Pairs are kept for so many patches at most where it is left to the plan: more take tens of seconds, and rows of rays
-/// one or two, docs/theory.md section 12.
+/// one or two, docs/concepts/pairs-and-rays.md.
 inline constexpr std::size_t most_patches_in_pairs = 10000;
 
 /// From so many patches on rows of rays are taken where the sides of the polygons have but few patches each, fewer than
 /// patches_of_coarse_sides in the mean: what the size of patches errs is then larger than the noise of rays, which take
-/// much less time than pairs, docs/theory.md section 12.
+/// much less time than pairs, docs/concepts/pairs-and-rays.md.
 inline constexpr std::size_t least_coarse_patches = 1000;
 inline constexpr std::size_t patches_of_coarse_sides = 32;
 

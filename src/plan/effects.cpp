@@ -25,7 +25,7 @@ const char* name_of(Effect effect) {
     case Effect::interreflection:
       return "interreflection";
     case Effect::colour:
-      return "colour";
+      return "color";
     case Effect::reach:
       return "reach";
     case Effect::backs:
@@ -43,7 +43,7 @@ const char* name_of(Effect effect) {
     case Effect::mirrors:
       return "mirrors";
     case Effect::bands_of_panes:
-      return "colour of panes";
+      return "color of panes";
     case Effect::spectra:
       return "spectra";
     case Effect::gloss:

@@ -51,12 +51,12 @@ std::string advice_on_lamps(const std::vector<LampHint>& hints) {
 std::string advice_on_other_light(const Scene& scene, const std::optional<Solid>& hull) {
   if (hull && is_room(scene, *hull)) {
     return "; no daylight gets into the room (" + place_of(scene, scene.polygons[hull->polygons.front()]) +
-           "), as no face of it lets light through: let patchlight new MODEL -o SCENE.toml write a scene file with a "
+           "), as no face of it lets light through: let patchlight init MODEL -o SCENE.toml write a scene file with a "
            "luminaire in it (docs/lights.md)";
   }
   return std::string("; for daylight ") + (hull ? "from outside, as no face of the model lets light through, " : "") +
          "add " + usual_sky +
-         ", or let patchlight new MODEL -o SCENE.toml write a scene file to change (luminaires stand there, too: "
+         ", or let patchlight init MODEL -o SCENE.toml write a scene file to change (luminaires stand there, too: "
          "docs/lights.md)";
 }
 

@@ -1,32 +1,135 @@
 #include "patchlight/plan/plan.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
 
+#include "mesh/coarse_outline.h"
 #include "mesh/mesher.h"
 #include "plan/check_request.h"
 #include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/effect_facts.h"
-#include "plan/fine_outlines.h"
 #include "plan/first_light.h"
 #include "plan/goal.h"
 #include "plan/left_out_sides.h"
-#include "plan/luminaires_behind.h"
 #include "plan/memory.h"
 #include "plan/planned_lines.h"
 #include "plan/survey.h"
 #include "scene/extent.h"
+#include "scene/problem_face.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <numbers>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+std::string note_on_coarse(const std::string& faces, std::size_t corners, std::size_t left_out, double max_edge) {
+  std::ostringstream text;
+  text.precision(2);
+  text << faces << " with an outline of up to " << corners
+       << " corners, finer than the patches: these follow one of the same area without up to " << left_out
+       << " of them, nowhere farther away than " << outline_tolerance * max_edge << " m";
+  return text.str();
+}
+
+std::string note_on_kept(const std::string& faces, std::size_t corners) {
+  return faces + " with an outline of up to " + std::to_string(corners) +
+         " corners where other faces meet it or it turns, finer than the patches asked for: these are kept, so that "
+         "each side takes " +
+         std::to_string(corners - 2) + " patches at least; an outline of fewer corners takes fewer";
+}
+
+// What is worth saying of outlines that are finer than patches, in a mesh with edges of at most `max_edge` metres: of
+// which faces patches follow a coarser outline; and which take a quarter of the `asked` patches or more for their
+// corners alone, 0 standing for no such number.
+std::vector<std::string> notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked,
+                                                double max_edge) {
+  constexpr std::size_t parts = 4;  // of the patches asked for: a face that takes as many is worth a word
+  constexpr std::size_t few = 24;   // corners that a round face keeps however large patches are
+  const std::vector<std::size_t> left_out = left_out_corners(scene, max_edge);
+  std::vector<ProblemFace> coarse, kept;
+  std::size_t most = 0, most_left_out = 0, most_kept = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::size_t corners = scene.polygons[p].corners.size();
+    if (!(sides.front[p] || sides.back[p]) || corners <= 4) continue;
+    const auto face = [&] { return problem_face(scene, scene.polygons[p]); };
+    if (left_out[p] > 0) {
+      coarse.push_back(face());
+      most = std::max(most, corners);
+      most_left_out = std::max(most_left_out, left_out[p]);
+    }
+    if (asked == 0 || parts * (corners - left_out[p] - 2) < asked) continue;
+    if (left_out[p] > 0 && corners - left_out[p] <= few) continue;
+    kept.push_back(face());
+    most_kept = std::max(most_kept, corners - left_out[p]);
+  }
+  std::vector<std::string> notes;
+  if (!coarse.empty()) notes.push_back(note_on_coarse(listed(scene, coarse), most, most_left_out, max_edge));
+  if (!kept.empty()) notes.push_back(note_on_kept(listed(scene, kept), most_kept));
+  return notes;
+}
+
+constexpr double farthest = 1.001e-3;  // metres: a millimetre, rounded
+constexpr double in_plane = 1e-9;      // of the extent: what shadow rays take for in the plane
+
+// Does the point lie over the polygon, seen along its normal?
+bool lies_over(const Point& point, const std::vector<Point>& corners, const Vector& normal) {
+  const auto triangles = triangulate(corners);
+  const auto is_left = [&](std::size_t a, std::size_t b) {
+    return normal.dot((corners[b] - corners[a]).cross(point - corners[a])) >= 0;
+  };
+  return std::any_of(triangles.begin(), triangles.end(), [&](const auto& triangle) {
+    const auto& [a, b, c] = triangle;
+    return is_left(a, b) && is_left(b, c) && is_left(c, a);
+  });
+}
+
+// What is to be said of a luminaire at this height over the front of a face over which it lies; nothing where it is
+// well before the side that it lights.
+std::string trouble_at(const Luminaire& luminaire, double height, const Vector& normal, double nearest) {
+  std::ostringstream text;
+  text.precision(3);
+  if (std::abs(height) <= nearest) {
+    if (std::holds_alternative<PointLight>(luminaire.light))
+      text << "in the plane of a face, so that half of its light goes to either side";
+  } else if (height * luminaire.aim.dot(normal) < 0) {
+    text << 1000 * std::abs(height) << " mm behind a face towards which it shines, so that it lights the other side";
+  }
+  return text.str();
+}
+
+// A sentence for each luminaire that lies up to 1 mm behind an opaque face towards which it shines, but not in its
+// plane: its light falls on the side that is not meant, as on the roof when it is a little over the ceiling. And for
+// each that shines in all directions from the plane of an opaque face: half of its light goes to either side.
+std::vector<std::string> notes_on_luminaires_behind(const Scene& scene) {
+  std::vector<std::string> notes;
+  const double nearest = in_plane * extent_of(scene);
+  for (const Luminaire& luminaire : scene.luminaires) {
+    for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+      const Vector normal = front_normal(scene, p);
+      const double height = normal.dot(luminaire.position - scene.vertices[scene.polygons[p].corners[0]]);
+      if (std::abs(height) > farthest || is_opening(scene, p)) continue;
+      const std::string trouble = trouble_at(luminaire, height, normal, nearest);
+      if (trouble.empty() || !lies_over(luminaire.position, corner_points(scene, p), normal)) continue;
+      notes.push_back("luminaire '" + luminaire.name + "' (" + luminaire.place + ") lies " + trouble + " (" +
+                      place_of(scene, scene.polygons[p]) + "); move it if that is not meant");
+      break;
+    }
+  }
+  return notes;
+}
 
 void require_lamp(const Scene& scene) {
   if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + first_light(scene).advice);

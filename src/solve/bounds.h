@@ -31,7 +31,8 @@ struct Bounds {
   bool contracts() const;
 };
 
-/// rho_max times the largest row sum, which `options` tells or one application finds. docs/theory.md section 7.
+/// rho_max times the largest row sum, which `options` tells or one application finds.
+/// docs/theory/solvers-and-bounds.md.
 Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
                               const SolverOptions& options);
 

@@ -9,7 +9,7 @@ namespace patchlight {
 // reflect nothing. Written here because library routines take one band at a time and hide their iterates.
 
 /// Conjugate gradients (Hestenes and Stiefel 1952) on the symmetric system (I - G) w = R^1/2 A^-1/2 S E with
-/// B = E + R^1/2 A^-1/2 w and G = R^1/2 A^-1/2 S A^-1/2 R^1/2. docs/theory.md section 7.
+/// B = E + R^1/2 A^-1/2 w and G = R^1/2 A^-1/2 S A^-1/2 R^1/2. docs/theory/solvers-and-bounds.md.
 Solution cg(Iterations iterations);
 
 /// The same with the mode deflated that is constant irradiance (Saad, Yeung, Erhel and Guyomarc'h 2000, algorithm 3.6):

@@ -18,12 +18,12 @@ Solution sor(Iterations iterations, const RowTransport& transport);
 /// Gauss-Seidel from the first patch to the last and back.
 Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& transport);
 
-/// Chebyshev's semi-iteration for eigenvalues of K between -kappa and kappa, kappa the bound of docs/theory.md section
-/// 7 below 1, else the spectral radius.
+/// Chebyshev's semi-iteration for eigenvalues of K between -kappa and kappa, kappa the bound of
+/// docs/theory/solvers-and-bounds.md below 1, else the spectral radius.
 Solution chebyshev(Iterations iterations);
 
 /// A relaxation factor for matrices whose spectrum is one mode with the eigenvalue `radius` < 1 far above all others:
-/// where the mode and the rest decay alike. docs/theory.md section 7.
+/// where the mode and the rest decay alike. docs/theory/solvers-and-bounds.md.
 double relaxation_for(double radius);
 
 }  // namespace patchlight

@@ -15,7 +15,7 @@ namespace patchlight {
 namespace {
 
 // Relative standard error of an entry of which nothing is known, for weighing entries against a measured lost share.
-// docs/theory.md section 6.
+// docs/theory/closure.md.
 constexpr double entry_error = 0.02;
 
 // The same of one that was found without shadow rays: quadrature and rounding.

@@ -33,7 +33,7 @@ struct KnownErrors {
 /// the measured lost share has a standard error that is weighed against those of the entries, which are next to 0 where
 /// no shadow ray was needed. Without known errors 2 % of S_ij are taken for the error of each. Falls back to symmetric
 /// scaling when an entry would become negative, in an open scene to cutting row sums at the area plus three standard
-/// errors, and to the raw entries where no symmetric matrix with this pattern has such sums. docs/theory.md section 6.
+/// errors, and to the raw entries where no symmetric matrix with this pattern has such sums. docs/theory/closure.md.
 /// \throws Cancelled.
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
                                          const Observer& observer = {});

@@ -119,8 +119,8 @@ void LampSampler::trace(LampRays& rays, const SampledPatch& patch, const LampPie
   }
 }
 
-// docs/theory.md, formula (5), as PairSampler::exchange_area(); U is the form factor without occluders, w_k = A G_k
-// with the area of the lamp's piece. It is at most `most`.
+// docs/theory/occluded-form-factors.md, formula (5), as PairSampler::exchange_area(); U is the form factor without
+// occluders, w_k = A G_k with the area of the lamp's piece. It is at most `most`.
 double form_factor_by(const LampRays& rays, double U, double area, double most) {
   const double share = rays.visible_share();
   if (share == 0) return 0;

@@ -56,7 +56,7 @@ class PairSampler {
   /// All samples of one pair anew, independent of those before.
   Pair sampled_again(const Pair& pair) const;
 
-  /// The estimate from the pair's rays, m^2: docs/theory.md, formula (5).
+  /// The estimate from the pair's rays, m^2: docs/theory/occluded-form-factors.md, formula (5).
   double exchange_area(const Pair& pair) const;
 
  private:

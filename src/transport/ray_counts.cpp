@@ -7,7 +7,7 @@ namespace patchlight {
 namespace {
 
 // The error of patch i's irradiance falls with its rays, and counts by its area; with patches of very different sizes
-// more rays for the large ones pay. The exponent is measured: docs/theory.md section 12.
+// more rays for the large ones pay. The exponent is measured: docs/theory/ray-method.md.
 constexpr double exponent = 0.4;
 
 // The power of two next to factor A_i^0.4.

@@ -62,12 +62,12 @@ struct TracedRows {
 };
 
 /// Rows of form factors F_ij by rays over the cosine-weighted hemisphere of each patch, that start spread over it, and
-/// shadow rays towards bright patches, both by the balance heuristic (Veach and Guibas 1995): docs/theory.md
-/// section 12. Each row sums up to what its patch sees, 1 - escaped - at_backs, to rounding; where a patch sees nothing
-/// but sides without patches, or all of it is covered, its rows may be empty. Where the occluder has specular polygons
-/// rows are not scaled, and `lost` has of rays that are lost only those that met none of them. O(size) time and memory.
-/// The same bits for any number of threads, and when some of the blocks, null for none, were kept by an earlier call
-/// for the same. \throws Cancelled, and what the blocks throw.
+/// shadow rays towards bright patches, both by the balance heuristic (Veach and Guibas 1995):
+/// docs/theory/ray-method.md. Each row sums up to what its patch sees, 1 - escaped - at_backs, to rounding; where a
+/// patch sees nothing but sides without patches, or all of it is covered, its rows may be empty. Where the occluder has
+/// specular polygons rows are not scaled, and `lost` has of rays that are lost only those that met none of them.
+/// O(size) time and memory. The same bits for any number of threads, and when some of the blocks, null for none, were
+/// kept by an earlier call for the same. \throws Cancelled, and what the blocks throw.
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 

@@ -1,25 +1,3 @@
-#include "verify/path_tracer.h"
-
-#include "base/parallel.h"
-#include "base/sampling.h"
-#include "verify/delta_sources.h"
-#include "verify/exposed.h"
-#include "verify/lamps.h"
-#include "verify/mirror_images.h"
-#include "verify/path_scene.h"
-#include "verify/ray_walk.h"
-#include "verify/sensor_point.h"
-#include "verify/sky_radiance.h"
-
-#include <algorithm>
-#include <bit>
-#include <functional>
-#include <memory>
-#include <numbers>
-#include <optional>
-#include <utility>
-#include <vector>
-
 // Radiosity B and irradiance H of a diffuse scene obey, at every point x (Kajiya 1986),
 //
 //   H(x) = int L(x, w) cos(theta) dw,    L(x, w) = B(y) / pi,    B(y) = E(y) + rho(y) H(y),
@@ -41,9 +19,159 @@
 // alone find lamps and sky in mirrors. Luminaires and sun in mirrors are found by random chains of images.
 //
 // The tracer shares the ray caster and the scene with the solver, and nothing else.
+#include "verify/path_tracer.h"
+
+#include "patchlight/scene/scene.h"
+#include "patchlight/scene/sensor.h"
+
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "scene/extent.h"
+#include "scene/triangulate.h"
+#include "verify/delta_sources.h"
+#include "verify/exposed.h"
+#include "verify/mirror_images.h"
+#include "verify/path_scene.h"
+#include "verify/ray_walk.h"
+#include "verify/sky_radiance.h"
+#include "verify/surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// A piece of an emitting side.
+struct LampTriangle {
+  std::array<Point, 3> corners;
+  PolygonIndex polygon = 0;
+  Side side = Side::front;
+};
+
+// A point of an emitting side.
+struct LampPoint {
+  Point point;
+  PolygonIndex polygon = 0;
+  Side side = Side::front;
+};
+
+// All that emits, to be sampled by area: each square metre in proportion to its exitance, mean of the bands.
+struct Lamps {
+  std::vector<LampTriangle> triangles;
+  std::vector<double> flux_before;  // of the triangles before each, mean of the bands, W
+  double flux = 0;                  // of all, W
+};
+
+Lamps lamps_of(const Scene& scene, const Surfaces& surfaces) {
+  Lamps lamps;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::vector<Point> points = corner_points(scene, p);
+    for (const Side side : {Side::front, Side::back}) {
+      const double exitance = surfaces.at(p, side).exitance.mean();
+      if (!(exitance > 0)) continue;
+      for (const auto& [a, b, c] : triangulate(points)) {
+        lamps.triangles.push_back({{points[a], points[b], points[c]}, p, side});
+        lamps.flux_before.push_back(lamps.flux);
+        lamps.flux += exitance * (points[b] - points[a]).cross(points[c] - points[a]).norm() / 2;
+      }
+    }
+  }
+  return lamps;
+}
+
+// The point that belongs to (u, v) in the unit square: the density of points is sampling_density(). There must be a
+// lamp.
+LampPoint sample(const Lamps& lamps, double u, double v) {
+  assert(lamps.flux > 0);
+  // The triangle whose share of the flux holds u, which is stretched over that share to be used again.
+  const double wanted = u * lamps.flux;
+  const auto above = std::upper_bound(lamps.flux_before.begin() + 1, lamps.flux_before.end(), wanted);
+  const auto t = static_cast<std::size_t>(std::distance(lamps.flux_before.begin(), above)) - 1;
+  const double end = t + 1 < lamps.flux_before.size() ? lamps.flux_before[t + 1] : lamps.flux;
+  const double stretched = (wanted - lamps.flux_before[t]) / (end - lamps.flux_before[t]);
+
+  const LampTriangle& triangle = lamps.triangles[t];
+  const auto& [p0, p1, p2] = triangle.corners;
+  const Eigen::Vector2d b = square_to_triangle(std::clamp(stretched, 0.0, 1.0), v);
+  return {p0 + b[0] * (p1 - p0) + b[1] * (p2 - p0), triangle.polygon, triangle.side};
+}
+
+// The density with which points of a surface are sampled, 1/m^2.
+double sampling_density(const Lamps& lamps, const Surface& surface) { return surface.exitance.mean() / lamps.flux; }
+
+constexpr double share_of_polygon = 1e-5;
+constexpr double share_of_scene = 1e-6;
+
+// A sensor on a polygon is read at this share of the scene's extent before it: the ray caster resolves half of that.
+constexpr double height_share = 2e-9;
+
+// A polygon, and the distance within which a sensor lies on it.
+struct Surround {
+  std::vector<Point> corners;
+  Vector normal;
+  Box box;
+  double tolerance = 0;
+
+  bool touches(const Point& point) const;
+};
+
+double distance_to_segment(const Point& point, const Point& a, const Point& b) {
+  const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (point - a - along * (b - a)).norm();
+}
+
+// Inside the outline, by the winding number of its edges around the point, or near an edge. The two ways along a seam
+// cancel.
+bool Surround::touches(const Point& point) const {
+  if (box.squaredExteriorDistance(point) > tolerance * tolerance) return false;
+  if (std::abs(normal.dot(point - corners[0])) > tolerance) return false;
+  double angle = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Point& next = corners[(k + 1) % corners.size()];
+    if (distance_to_segment(point, corners[k], next) <= tolerance) return true;
+    const Vector a = corners[k] - point;
+    const Vector b = next - point;
+    angle += std::atan2(a.cross(b).dot(normal), a.dot(b));
+  }
+  return std::abs(angle) > std::numbers::pi;
+}
+
+// The points from which sensors are read. A sensor lies on a polygon if it is nearer than 1e-5 of the polygon's size
+// or 1e-6 of the scene's. It is then moved just in front of the side that it faces along. O(sensors x corners).
+std::vector<Point> points_before_polygons(const Scene& scene, std::span<const Sensor> sensors) {
+  const double extent = extent_of(scene);
+  std::vector<Surround> polygons;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    Surround polygon{corner_points(scene, p), front_normal(scene, p), {}, 0};
+    for (const Point& corner : polygon.corners) polygon.box.extend(corner);
+    polygon.tolerance = std::max(share_of_polygon * polygon.box.diagonal().norm(), share_of_scene * extent);
+    polygons.push_back(std::move(polygon));
+  }
+  std::vector<Point> points(sensors.size());
+  parallel_for(points.size(), [&](std::size_t k) {
+    points[k] = sensors[k].point;
+    for (const Surround& polygon : polygons) {
+      if (!polygon.touches(points[k])) continue;
+      const double facing = polygon.normal.dot(sensors[k].normal) < 0 ? -1 : 1;
+      points[k] +=
+          (facing * height_share * extent - polygon.normal.dot(points[k] - polygon.corners[0])) * polygon.normal;
+    }
+  });
+  return points;
+}
 
 // A path may go on for ever between surfaces that absorb nothing.
 constexpr double highest_survival = 0.9999;

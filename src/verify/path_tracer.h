@@ -49,8 +49,8 @@ struct PathEstimate {
 /// factors or a system of equations. The tracer shares the ray caster and the scene with the solver; sources, panes,
 /// mirrors and sky are evaluated by code of its own. Kept sides reflect and emit as in simulate(); other sides are
 /// black. Shadow rays find luminaires and sun, also over chains of mirrors of any length. Scattered rays find the sky.
-/// The mean is over the part of a receiver that is not covered (docs/theory.md section 2). The result does not depend
-/// on the number of threads. \throws Cancelled.
+/// The mean is over the part of a receiver that is not covered (docs/theory/radiosity-equation.md). The result does not
+/// depend on the number of threads. \throws Cancelled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 

@@ -41,7 +41,7 @@ Spectrum transmittance(const Surface& surface, double cosine);
 Spectrum specular_reflectance(const Surface& surface, double cosine);
 
 /// The share that it keeps there over that which it keeps of light from all directions alike. A pane sends out, and
-/// weighs what it reflects, by this: docs/theory.md section 11.
+/// weighs what it reflects, by this: docs/theory/panes-mirrors-sheets.md.
 Spectrum relative_held(const Surface& surface, double cosine);
 
 /// The sides of a scene's polygons.

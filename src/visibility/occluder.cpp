@@ -1,21 +1,143 @@
 #include "visibility/occluder.h"
 
+#include "patchlight/scene/scene.h"
+
 #include "base/sampling.h"
-#include "visibility/blockers.h"
+#include "scene/coverings.h"
+#include "scene/extent.h"
+#include "scene/triangulate.h"
+#include "visibility/convex_hull.h"
 #include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
-#include "visibility/traced_faces.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstddef>
+#include <cstdint>
 #include <embree3/rtcore.h>
 #include <limits>
+#include <new>
 #include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// All polygons of a scene, which rays meet, in a scene of about unit size.
+struct TracedFaces {
+  RTCDevice device = rtcNewDevice(nullptr);
+  Point centre;
+  double scale;  // 1 / extent, 1/m
+  TriangleScene triangles;
+  CoveredPlaces covered_places;
+
+  TracedFaces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings);
+  ~TracedFaces() { rtcReleaseDevice(device); }
+  TracedFaces(const TracedFaces&) = delete;
+  TracedFaces& operator=(const TracedFaces&) = delete;
+
+  Point recentred(const Point& point) const { return scale * (point - centre); }
+  // The triangles of all polygons but those marked, each hit of which the filter looks at.
+  void build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
+             RTCFilterFunctionN filter = keep_separating_hits) const;
+};
+
+void fail_on_error(void*, RTCError code, const char* message) {
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throw std::runtime_error(std::string("Embree: ") + message);
+}
+
+TracedFaces::TracedFaces(const Scene& scene, const std::vector<std::uint8_t>& without, Coverings coverings) {
+  // The memory may not do for its threads.
+  if (device == nullptr) throw std::bad_alloc();
+  rtcSetDeviceErrorFunction(device, fail_on_error, nullptr);
+  const Box box = main_bounds(scene);
+  centre = box.center();
+  scale = 1 / box.diagonal().norm();
+  build(triangles, scene, without);
+  covered_places.coverings = std::move(coverings);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    std::vector<Point> points = corner_points(scene, p);
+    for (Point& point : points) point = recentred(point);
+    covered_places.polygons.push_back(flat_polygon(points));
+  }
+}
+
+void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::vector<std::uint8_t>& without,
+                        RTCFilterFunctionN filter) const {
+  std::vector<Eigen::Vector3f> corners;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (without[p]) continue;
+    std::vector<Point> points = corner_points(scene, p);
+    for (Point& point : points) point = recentred(point);
+    for (const auto& [a, b, c] : triangulate(points)) {
+      for (const std::uint32_t corner : {a, b, c}) corners.push_back(points[corner].cast<float>());
+      const Vector normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
+      target.planes.push_back({normal, normal.dot(points[a]), p});
+      target.polygons.push_back(p);
+    }
+  }
+  target.scene = rtcNewScene(device);
+  // Robust: rays do not slip between two triangles that share an edge.
+  rtcSetSceneFlags(target.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(target.scene, RTC_BUILD_QUALITY_HIGH);
+  if (!target.planes.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), corners.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), target.planes.size()));
+    if (vertices == nullptr || indices == nullptr) throw std::bad_alloc();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      for (int d = 0; d < 3; ++d) vertices[3 * k + static_cast<std::size_t>(d)] = corners[k][d];
+      indices[k] = static_cast<unsigned>(k);
+    }
+    rtcSetGeometryUserData(geometry, &target);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(target.scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(target.scene);
+}
+
+// Which polygons take part in tracing; marks are 1 per polygon that does not.
+
+std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
+
+// Whether clear polygons let light through.
+bool lets_through(Occluder::Blockers which) {
+  return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
+}
+
+// Those left out, and besides all clear polygons, or all others.
+std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const Scene& scene, bool clear) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    if (is_opening(scene, p) == clear) left_out[p] = 1;
+  return left_out;
+}
+
+// The polygons that cannot stand in the way of a segment.
+std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
+  if (which == Occluder::Blockers::all) return none_of(scene);
+  if (which == Occluder::Blockers::none) return std::vector<std::uint8_t>(scene.polygons.size(), 1);
+  if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
+  std::vector<std::uint8_t> left_out;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    left_out.push_back(is_opening(scene, p) == (which == Occluder::Blockers::opaque));
+  return left_out;
+}
+
+// The polygons that rays do not meet: those of the other kind, where only one kind is asked for.
+std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
+  return lets_through(which) ? none_of(scene) : left_out_by(which, scene);
+}
 
 // Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
 constexpr double beyond = 1e6;

@@ -90,7 +90,8 @@ class Occluder {
   /// The share of the light along each segment that arrives: 0 where some polygon blocks it, else the product of the
   /// transmittances, at the angle at which each is met, of the clear polygons between its ends. An end on a clear
   /// polygon multiplies it by relative_held() there, so that times held_share() it is what goes from one polygon to the
-  /// other, docs/theory.md (15); it may be above 1. Embree works in packets: pass hundreds at once.
+  /// other, docs/theory/panes-mirrors-sheets.md (15); it may be above 1. Embree works in packets: pass hundreds at
+  /// once.
   std::vector<float> transmittance(std::span<const Segment> segments) const;
 
   /// The same of each ray of a packet. For speed: the ends are given in single precision, so that the rule above holds

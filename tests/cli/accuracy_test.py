@@ -1,4 +1,4 @@
-"""`patchlight solve --accuracy`, `--time`, `--error-bars`: what is asked, what is stated, what is refused."""
+"""`patchlight solve --accuracy`, `--time-limit`, `--error-bars`: what is asked, what is stated, what is refused."""
 import json
 import math
 import re
@@ -94,7 +94,7 @@ class AccuracyTest(ToolTest):
         return done
 
     def report(self, *arguments, code=GOOD):
-        done = self.solve("--report", "report.json", *arguments, code=code)
+        done = self.solve("--json", "report.json", *arguments, code=code)
         return json.loads((self.folder / "report.json").read_text()), done
 
     def body(self, name):
@@ -106,19 +106,19 @@ class AccuracyTest(ToolTest):
         self.write("office.toml", OFFICE)
         self.write("office.obj", OFFICE_MODEL)
         self.write("office.mtl", OFFICE_MATERIALS)
-        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--report", "report.json")
+        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         self.assertRegex(done.stdout, r"\nerror of the patches' means inside about \S+ %")
         self.assertRegex(done.stdout, r"\n  outside, \d+ patches, of the light that is reflected there: \S+ %")
         spaces = json.loads((self.folder / "report.json").read_text())["relative_error_by_space"]
-        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--report", "report.json",
-                             "--interest", "room.inside")
+        done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json",
+                             "--focus", "room.inside")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         report = json.loads((self.folder / "report.json").read_text())
         self.assertAlmostEqual(report["relative_error"]["total"], spaces["inside"]["total"], 9)
         self.assertIsNone(report["relative_error_by_space"])
-        done = self.run_tool("solve", "office.toml", "--error-bars", "--report", "report.json",
-                             "--interest", "house.inside")
+        done = self.run_tool("solve", "office.toml", "--error-bars", "--json", "report.json",
+                             "--focus", "house.inside")
         self.assertEqual(done.returncode, INPUT)
         self.assertIn("house.inside", done.stderr)
 
@@ -128,7 +128,7 @@ class AccuracyTest(ToolTest):
     def test_values_that_are_refused(self):
         for option, values, expected in (
                 ("--accuracy", ("0", "1", "100%", "-1%", "one", "", "1%%", "0.5 % %"), "1% or 0.01"),
-                ("--time", ("0s", "10", "-1s", "1d", "s", "", "nans"), "30s, 2min")):
+                ("--time-limit", ("0s", "10", "-1s", "1d", "s", "", "nans"), "30s, 2min")):
             for value in values:
                 done = self.solve("-o", "a.vtp", option, value, code=USAGE)
                 self.assertIn(f"{option}: found '{value}'", done.stderr)
@@ -162,14 +162,14 @@ class AccuracyTest(ToolTest):
         self.write("office.toml", OFFICE)
         self.write("office.obj", OFFICE_MODEL)
         self.write("office.mtl", OFFICE_MATERIALS)
-        for storage in ("tiles", "rays"):
-            done = self.run_tool("solve", "office.toml", "--patches", 300, "--storage", storage, "--report", "report.json")
+        for storage in ("pairs", "rays"):
+            done = self.run_tool("solve", "office.toml", "--patches", 300, "--method", storage, "--json", "report.json")
             self.assertEqual(done.returncode, GOOD, done.stderr)
             costs = json.loads((self.folder / "report.json").read_text())["costs"]
-            self.assertEqual("direct light" in [cost["stage"] for cost in costs], storage == "tiles", costs)
+            self.assertEqual("direct light" in [cost["stage"] for cost in costs], storage == "pairs", costs)
 
     def test_rays_are_told_with_those_that_are_doubled(self):
-        report, done = self.report("--storage", "rays", "--rays", "16", "--accuracy", "2%", "--patches", "300", "-v")
+        report, done = self.report("--method", "rays", "--rays", "16", "--accuracy", "2%", "--patches", "300", "-v")
         rays = report["accuracy"][-1]["samples"]
         self.assertGreater(rays, 16)
         self.assertIn(f"form factors: sparse rows of {rays} rays of a patch in the mean\n", done.stdout)
@@ -182,20 +182,20 @@ class AccuracyTest(ToolTest):
             self.assertNotIn("not known", self.solve("-o", "a.ply", "--patches", "100", *words).stdout)
 
     def test_options_that_leave_no_error_bars_are_refused(self):
-        for asked in (("--accuracy", "1%"), ("--time", "1s"), ("--error-bars",)):
-            for other in (("--on-demand", "--solver", "progressive"), ("--form-factors", "room.ff"), ("--no-closure",),
+        for asked in (("--accuracy", "1%"), ("--time-limit", "1s"), ("--error-bars",)):
+            for other in (("--method", "on-demand", "--solver", "progressive"), ("--form-factors", "room.ff"), ("--no-closure",),
                           ("--estimator", "area"), ("--solver", "progressive", "--max-rows", "5%")):
                 done = self.solve("-o", "a.vtp", *asked, *other, code=USAGE)
                 self.assertIn(asked[0], done.stderr)
                 self.assertIn(other[-2] if other[-1] == "5%" else other[0], done.stderr)
                 self.assertIn("exclude each other", done.stderr)
-        self.assertIn("--interest: found without an error", self.solve("-o", "a.vtp", "--interest", "white", code=USAGE).stderr)
+        self.assertIn("--focus: found without an error", self.solve("-o", "a.vtp", "--focus", "white", code=USAGE).stderr)
         done = self.run_tool("relight", "room.ff", "-o", "a.vtp", "--accuracy", "1%")
         self.assertEqual((done.returncode, "unknown option --accuracy" in done.stderr), (USAGE, True), done.stderr)
         self.assertEqual(self.names(), set())
 
     def test_an_unknown_interest_names_the_known_ones(self):
-        done = self.solve("-o", "a.vtp", "--accuracy", "5%", "--interest", "white", "--interest", "whyte", code=INPUT)
+        done = self.solve("-o", "a.vtp", "--accuracy", "5%", "--focus", "white", "--focus", "whyte", code=INPUT)
         self.assertIn("'whyte'", done.stderr)
         self.assertRegex(done.stderr, r"did you mean 'white'")
         self.assertEqual(self.names(), set())
@@ -269,7 +269,7 @@ class AccuracyTest(ToolTest):
     def test_interest_saves_patches(self):
         self.write("room.obj", ROOM.replace("f 13 14 15 16", "o plate\nf 13 14 15 16"))
         everything, _ = self.report("--accuracy", "0.5%")
-        plate, done = self.report("--accuracy", "0.5%", "--interest", "plate")
+        plate, done = self.report("--accuracy", "0.5%", "--focus", "plate")
         self.assertEqual(plate["request"]["interest"], ["plate"])
         self.assertLessEqual(plate["relative_error"]["total"], 0.005)
         self.assertLess(plate["mesh"]["patches"], everything["mesh"]["patches"])
@@ -277,7 +277,7 @@ class AccuracyTest(ToolTest):
 
     def test_time_ends_with_a_result(self):
         begin = time.monotonic()
-        report, _ = self.report("--time", "1.5s", "-o", "a.vtp")
+        report, _ = self.report("--time-limit", "1.5s", "-o", "a.vtp")
         # No measure of speed: only that it does not go on and on.
         self.assertLess(time.monotonic() - begin, 100)
         self.assertEqual(report["request"]["time_s"], 1.5)
@@ -285,11 +285,11 @@ class AccuracyTest(ToolTest):
         self.assertIn("a.vtp", self.names())
 
     def test_an_accuracy_not_reached_in_time_is_exit_code_3_with_the_result(self):
-        report, done = self.report("--accuracy", "0.001%", "--time", "1s", "-o", "a.vtp", code=NOT_REACHED)
+        report, done = self.report("--accuracy", "0.001%", "--time-limit", "1s", "-o", "a.vtp", code=NOT_REACHED)
         self.assertTrue(report["solution"]["converged"])
         self.assertGreater(report["relative_error"]["total"], 1e-5)
         found = re.search(r"warning: accuracy of 0.001 % NOT reached: the error is about (\S+) % after \S+ s; most of it "
-                          r"is from the (size of the patches|sampling of form factors). Give a longer --time", done.stderr)
+                          r"is from the (size of the patches|sampling of form factors). Give a longer --time-limit", done.stderr)
         self.assertIsNotNone(found, done.stderr)
         self.assertAlmostEqual(float(found[1]) / 100 / report["relative_error"]["total"], 1, delta=0.05)
         self.assertIn("a.vtp", self.names())
@@ -301,7 +301,7 @@ class AccuracyTest(ToolTest):
         self.assertNotIn("error of the patches' means", done.stdout)
 
     def test_an_accuracy_out_of_memory_is_exit_code_4_with_what_can_be_had(self):
-        done = self.solve("--accuracy", "0.05%", "--storage", "tiles", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
+        done = self.solve("--accuracy", "0.05%", "--method", "pairs", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
         found = re.search(r"--accuracy 0.05%: found that it takes about (\d+) patches and (\S+) GB, and 0.08 GB may be "
                           r"taken; expected about (\S+)% or more", done.stderr)
         self.assertIsNotNone(found, done.stderr)

@@ -70,7 +70,7 @@ class BuildingTest(ToolTest):
     def test_options_give_the_light_of_a_scene_file(self):
         self.write("court.toml", 'up = "z"\n[[model]]\nfile = "court.obj"\n[sky]\nkind = "overcast"\n'
                                  'illuminance = 8000\n[ground]\nreflectance = 0.1\n')
-        rest = ["--patches", 200, "--up", "z", "-q", "--report"]
+        rest = ["--patches", 200, "--up", "z", "-q", "--json"]
         self.good("solve", "court.toml", *rest, "file.json")
         self.good("solve", "court.obj", "--sky", "overcast:8000lx", "--ground", "0.1", *rest, "options.json")
         of_file, of_options = (json.loads((self.folder / name).read_text()) for name in ("file.json", "options.json"))
@@ -90,15 +90,15 @@ class BuildingTest(ToolTest):
                 ("--weather", "city.epw@13-1-5", ["MONTH-DAY-HOUR"])):
             self.refused(USAGE, [option, *parts], "solve", "court.obj", option, value, "-o", "x.vtp")
         self.refused(INPUT, ["--sky", "without a sun"], "plan", "court.obj", "--sky", "clear")
-        self.refused(INPUT, ["--leave-out", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
-                     "--leave-out", "flor")
+        self.refused(INPUT, ["--exclude", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
+                     "--exclude", "flor")
 
     def test_a_guessed_upright_axis_is_warned_of_where_light_depends_on_it(self):
         """A tall box that is open at the top looks as if y were upright. -q hides no warning of wrong results."""
         self.write("box.obj", "mtllib court.mtl\nusemtl stone\n"
                               "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 0 1 0\nv 0 0 3\nv 4 0 3\nv 4 1 3\nv 0 1 3\n"
                               "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
-        run = ("solve", "box.obj", "--sky", "overcast:1000lx", "--patches", 100, "-q", "--report", "a.json")
+        run = ("solve", "box.obj", "--sky", "overcast:1000lx", "--patches", 100, "-q", "--json", "a.json")
         guessed = self.run_tool(*run)
         self.assertEqual(guessed.returncode, 0, guessed.stderr)
         self.assertIn("warning: box.obj: no file states the upright axis, and the sky depends on it", guessed.stderr)
@@ -111,7 +111,7 @@ class BuildingTest(ToolTest):
         self.assertIn("--up", self.run_tool("plan", "box.toml").stderr)
 
     def test_a_model_without_lamps_is_told_of_the_sky(self):
-        self.refused(INPUT, ["--sky overcast:10000lx", "patchlight new MODEL -o SCENE.toml"], "solve", "court.obj",
+        self.refused(INPUT, ["--sky overcast:10000lx", "patchlight init MODEL -o SCENE.toml"], "solve", "court.obj",
                      "-o", "x.vtp")
 
     def test_what_is_left_out_does_not_take_part(self):
@@ -122,19 +122,19 @@ class BuildingTest(ToolTest):
         return (self.folder / "x.csv").read_text().splitlines()[1:]
 
     def test_a_new_scene_file_can_be_solved_and_is_not_overwritten(self):
-        self.good("new", "hall.obj", "-o", "hall.toml")
+        self.good("init", "hall.obj", "-o", "hall.toml")
         text = (self.folder / "hall.toml").read_text()
         self.assertIn('file = "hall.obj"', text)
         self.assertIn("[sky]\nkind", text)
         self.assertIn('floor = "floor"', text)
         # EN 12464-1: cells of 0.2 * 5^log10(4) = 0.53 m over 3 m x 2 m.
         self.assertEqual(len(self.sensors_of("hall.toml")), 6 * 4)
-        self.refused(OUTPUT, ["is there already"], "new", "hall.obj", "-o", "hall.toml")
+        self.refused(OUTPUT, ["is there already"], "init", "hall.obj", "-o", "hall.toml")
         self.assertEqual((self.folder / "hall.toml").read_text(), text)
-        self.refused(USAGE, ["patchlight new MODEL -o SCENE.toml"], "new", "hall.obj")
+        self.refused(USAGE, ["patchlight init MODEL -o SCENE.toml"], "init", "hall.obj")
 
     def test_a_new_scene_file_has_no_sensors_in_the_open(self):
-        self.good("new", "court.obj", "-o", "court.toml")
+        self.good("init", "court.obj", "-o", "court.toml")
         self.assertNotIn("\n[[sensors]]", (self.folder / "court.toml").read_text())
         self.good("check", "court.toml")
         self.good("solve", "court.toml", "--patches", 200, "-q", "-o", "court.vtp")
@@ -144,15 +144,15 @@ class BuildingTest(ToolTest):
         hall = (self.folder / "hall.obj").read_text().splitlines()
         self.write("mm.obj", "\n".join("v " + " ".join(str(1000 * float(x)) for x in line.split()[1:4])
                                        if line.startswith("v ") else line for line in hall) + "\n")
-        done = self.run_tool("new", "mm.obj", "-o", "mm.toml")
+        done = self.run_tool("init", "mm.obj", "-o", "mm.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("--unit mm", done.stderr)
         self.good("solve", "mm.toml", "--patches", 200, "-q", "-o", "mm.vtp")
-        self.good("new", "mm.obj", "--unit", "mm", "-o", "right.toml")
+        self.good("init", "mm.obj", "--unit", "mm", "-o", "right.toml")
         self.assertEqual(len(self.sensors_of("right.toml")), 6 * 4)
 
     def test_check_tells_of_a_great_many_sensors(self):
-        self.good("new", "hall.obj", "-o", "hall.toml")
+        self.good("init", "hall.obj", "-o", "hall.toml")
         text = (self.folder / "hall.toml").read_text()
         self.write("fine.toml", text.replace("# spacing = 0.5 ", "spacing = 0.005 "))
         said = self.good("check", "fine.toml")

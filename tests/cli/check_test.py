@@ -51,7 +51,7 @@ class CheckTest(ToolTest):
 
     def test_marked_faces_for_paraview(self):
         self.write("room.obj", ROOM + "f 1 2 2\n")
-        self.check("room.obj", "--vtk", "problems.vtp")
+        self.check("room.obj", "--problems", "problems.vtp")
         data = (self.folder / "problems.vtp").read_bytes()
         for name in (b"problem_kind", b"severity", b"source_line", b"problem_names"):
             self.assertIn(name, data)
@@ -85,12 +85,12 @@ class CheckTest(ToolTest):
         self.write("room.mtl", dark.replace("lamp", "panel"))
         self.write("room.obj", ROOM.replace("usemtl lamp", "usemtl panel"))
         words = self.next_of(self.check("room.obj"))
-        self.assertEqual(words, "new room.obj -o room.toml".split())
+        self.assertEqual(words, "init room.obj -o room.toml".split())
         self.assertEqual(self.run_tool(*words).returncode, GOOD)
         text = (self.folder / "room.toml").read_text()
         self.assertIn("[[luminaire]]\n", text)
         self.assertIn("\n# [sky]\n", text)
-        solved = self.run_tool("solve", "room.toml", "--patches", 100, "-q", "--report", "a.json")
+        solved = self.run_tool("solve", "room.toml", "--patches", 100, "-q", "--json", "a.json")
         self.assertEqual(solved.returncode, GOOD, solved.stderr)
         walls = json.loads((self.folder / "a.json").read_text())["materials"]
         self.assertGreater(next(m for m in walls if m["name"] == "white")["irradiance_mean_W_m2"][0], 0)
@@ -178,11 +178,11 @@ class CheckTest(ToolTest):
         self.assertAlmostEqual(report["sky"]["ground_radiance_W_m2_sr"][0], 0.5 / math.pi * 400, places=9)
 
     def test_command_line(self):
-        for arguments, word in (((), "model"), (("room.obj", "--vtk", "a.vtk"), ".vtp"), (("room.obj", "--jsn"), "--json"),
+        for arguments, word in (((), "model"), (("room.obj", "--problems", "a.vtk"), ".vtp"), (("room.obj", "--jsn"), "--json"),
                                 (("room.obj", "--unit", "mile"), "--unit"), (("room.obj", "--json", "room.obj"), "room.obj")):
             with self.subTest(arguments):
                 self.assertIn(word, self.check(*arguments, code=USAGE).stderr)
-        self.assertIn("no/a.vtp", self.check("room.obj", "--vtk", "no/a.vtp", code=OUTPUT).stderr)
+        self.assertIn("no/a.vtp", self.check("room.obj", "--problems", "no/a.vtp", code=OUTPUT).stderr)
         self.assertIn("problem_kind", self.check("--help").stdout)
 
 

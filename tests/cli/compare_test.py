@@ -1,4 +1,4 @@
-"""patchlight compare: every solver on one matrix, to the same true error."""
+"""patchlight compare-solvers: every solver on one matrix, to the same true error."""
 import csv
 import json
 import math
@@ -14,7 +14,7 @@ PLOTS = [f"error_by_{x}.{kind}" for x in ("application", "iteration", "second") 
 
 class CompareTest(ToolTest):
     def compare(self, *words, out="out"):
-        done = self.run_tool("compare", "room.obj", "--patches", 300, "-o", out, *words)
+        done = self.run_tool("compare-solvers", "room.obj", "--patches", 300, "-o", out, *words)
         self.assertEqual(done.returncode, GOOD, done.stderr)
         self.assertNotIn("warning", done.stderr)
         return done, json.loads((self.folder / out / "compare.json").read_text())
@@ -82,12 +82,12 @@ class CompareTest(ToolTest):
         (self.folder / "out").mkdir()
         (self.folder / "out" / "thesis.tex").write_text("mine")
         before = content(self.folder)
-        done = self.run_tool("compare", "room.obj", "--patches", 100, "-o", "out")
+        done = self.run_tool("compare-solvers", "room.obj", "--patches", 100, "-o", "out")
         self.assertEqual(done.returncode, OUTPUT)
         self.assertEqual(content(self.folder), before)
 
     def test_who_gives_up_is_named(self):
-        done = self.run_tool("compare", "room.obj", "--patches", 100, "-o", "out", "--max-iterations", 2, "--solvers",
+        done = self.run_tool("compare-solvers", "room.obj", "--patches", 100, "-o", "out", "--max-iterations", 2, "--solvers",
                              "jacobi,cg")
         self.assertEqual(done.returncode, NOT_CONVERGED)
         self.assertIn("not reached by jacobi, cg", done.stderr)
@@ -96,14 +96,14 @@ class CompareTest(ToolTest):
     def test_refusals(self):
         for words in (["--solvers", "cg,cg"], ["--solvers", ""], ["--solvers", "newton"], ["--tolerance", "0"],
                       ["--relaxation", "2"], ["--relaxation", "1.2", "--solvers", "cg"], ["--estimator", "area"]):
-            done = self.run_tool("compare", "room.obj", "-o", "out", *words)
+            done = self.run_tool("compare-solvers", "room.obj", "-o", "out", *words)
             self.assertEqual(done.returncode, USAGE, words)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
             self.assertIn(words[0], done.stderr)
 
     def test_trapped_light_is_said(self):
         """Reflectance 1 everywhere, the lamp's too, in a closed room."""
-        done = self.run_tool("compare", "room.obj", "--patches", 100, "-o", "out", "--set", "white.reflectance=1",
+        done = self.run_tool("compare-solvers", "room.obj", "--patches", 100, "-o", "out", "--set", "white.reflectance=1",
                              "--set", "lamp.reflectance=1")
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)
         self.assertIn("reflect all of it", done.stderr)

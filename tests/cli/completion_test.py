@@ -24,7 +24,7 @@ class CompletionTest(unittest.TestCase):
 
     def test_offers_the_words_of_an_option(self):
         self.assertEqual(offered("patchlight", "solve", "--solver", "g"), ["gauss-seidel", "gmres"])
-        self.assertEqual(offered("patchlight", "solve", "--quality", ""), ["draft", "final"])
+        self.assertEqual(offered("patchlight", "solve", "--picture-quality", ""), ["draft", "final"])
 
     def test_offers_files_elsewhere(self):
         self.assertIn(str(FILE), offered("patchlight", "solve", str(FILE)[:-2]))

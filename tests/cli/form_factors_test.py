@@ -47,7 +47,7 @@ class FormFactorsTest(ToolTest):
         self.assertRegex(info["geometry_sha256"], "^[0-9a-f]{64}$")
 
     def test_rows_of_rays_sum_up_to_what_patches_see(self):
-        self.find("-o", "room.ff", "--storage", "rays", "--patches", "300")
+        self.find("-o", "room.ff", "--method", "rays", "--patches", "300")
         folder = self.folder / "room.ff"
         info = json.loads((folder / "info.json").read_text())
         self.assertEqual(set(info["files"]) | {"info.json"}, {path.name for path in folder.iterdir()})
@@ -67,17 +67,17 @@ class FormFactorsTest(ToolTest):
     def test_rows_of_rays_are_no_matrix(self):
         for more in (["--matrix", "npy"], ["--by", "material"]):
             with self.subTest(more[0]):
-                done = self.find("-o", "room.ff", "--storage", "rays", *more, code=USAGE)
-                self.assertIn("--storage tiles", done.stderr)
-        done = self.find("-o", "F.npy", "--storage", "rays", code=USAGE)
-        self.assertIn("--storage tiles", done.stderr)
-        done = self.find("-o", "room.ff", "--storage", "on-demand", code=USAGE)
-        self.assertIn("tiles or rays", done.stderr)
-        done = self.find("-o", "room.ff", "--storage", "rays", "--raw", code=USAGE)
-        self.assertIn("--raw", done.stderr)
+                done = self.find("-o", "room.ff", "--method", "rays", *more, code=USAGE)
+                self.assertIn("--method pairs", done.stderr)
+        done = self.find("-o", "F.npy", "--method", "rays", code=USAGE)
+        self.assertIn("--method pairs", done.stderr)
+        done = self.find("-o", "room.ff", "--method", "on-demand", code=USAGE)
+        self.assertIn("pairs or rays", done.stderr)
+        done = self.find("-o", "room.ff", "--method", "rays", "--no-closure", code=USAGE)
+        self.assertIn("--no-closure", done.stderr)
 
     def test_raw_rows_are_not_closed(self):
-        self.find("-o", "raw.ff", "--raw", "--patches", "150")
+        self.find("-o", "raw.ff", "--no-closure", "--patches", "150")
         size = json.loads((self.folder / "raw.ff/info.json").read_text())["patches"]
         _, F = load(self.folder / "raw.ff/F.npy")
         _, raw_row_sum = load(self.folder / "raw.ff/raw_row_sum.npy")
@@ -108,7 +108,7 @@ class FormFactorsTest(ToolTest):
 
     def test_ten_lines_of_jacobi_solve_as_relight_does(self):
         self.find("-o", "room.ff", "--patches", "150")
-        done = self.run_tool("relight", "room.ff", "--tolerance", "1e-10", "--report", "room.json", "-o", "room.vtp")
+        done = self.run_tool("relight", "room.ff", "--tolerance", "1e-10", "--json", "room.json", "-o", "room.vtp")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         (size, _), F = load(self.folder / "room.ff/F.npy")
         (_, bands), E = load(self.folder / "room.ff/exitance.npy")
@@ -149,7 +149,7 @@ class FormFactorsTest(ToolTest):
 
     def test_every_estimator_finds_about_the_same(self):
         def mean_of(estimator):
-            done = self.find("-o", "F.npy", "--patches", "60", "--raw", "--samples", "256", "--estimator", estimator)
+            done = self.find("-o", "F.npy", "--patches", "60", "--no-closure", "--samples", "256", "--estimator", estimator)
             self.assertIn(f"estimator {estimator}", done.stdout)
             (size, _), F = load(self.folder / "F.npy")
             return sum(F) / size
@@ -160,7 +160,7 @@ class FormFactorsTest(ToolTest):
             self.assertAlmostEqual(mean_of(estimator), auto, delta=0.03, msg=estimator)
         self.find("-o", "area.ff", "--patches", "60", "--estimator", "area")
         self.assertFalse((self.folder / "area.ff/standard_error.npy").exists())
-        self.run_tool("solve", "room.obj", "--report", "area.json", "--form-factors", "area.ff")
+        self.run_tool("solve", "room.obj", "--json", "area.json", "--form-factors", "area.ff")
         report = json.loads((self.folder / "area.json").read_text())
         self.assertEqual(report["plan"]["estimator"], "area")
 
@@ -194,8 +194,8 @@ class FormFactorsTest(ToolTest):
     def test_solve_takes_them_with_any_material(self):
         self.find("-o", "room.ff", "--max-edge", "0.5")
         for setting in ([], ["--set", "white.reflectance=0.2,0.3,0.9"]):
-            self.run_tool("solve", "room.obj", "--report", "fresh.json", "--max-edge", "0.5", "--no-error-bars", *setting)
-            done = self.run_tool("solve", "room.obj", "--report", "stored.json", "--form-factors", "room.ff/", *setting)
+            self.run_tool("solve", "room.obj", "--json", "fresh.json", "--max-edge", "0.5", "--no-error-bars", *setting)
+            done = self.run_tool("solve", "room.obj", "--json", "stored.json", "--form-factors", "room.ff/", *setting)
             self.assertEqual(done.returncode, GOOD, done.stderr)
             fresh, stored = (json.loads((self.folder / name).read_text()) for name in ("fresh.json", "stored.json"))
             self.assertEqual(fresh["mesh"], stored["mesh"])
@@ -204,12 +204,12 @@ class FormFactorsTest(ToolTest):
 
     def test_solve_without_closure_takes_raw_ones_alone(self):
         self.find("-o", "closed.ff", "--max-edge", "0.5")
-        self.find("-o", "raw.ff", "--max-edge", "0.5", "--raw")
-        done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "closed.ff", "--no-closure")
+        self.find("-o", "raw.ff", "--max-edge", "0.5", "--no-closure")
+        done = self.run_tool("solve", "room.obj", "--json", "a.json", "--form-factors", "closed.ff", "--no-closure")
         self.assertEqual(done.returncode, INPUT)
-        self.assertIn("--raw", done.stderr)
+        self.assertIn("--no-closure", done.stderr)
         for words in (["--form-factors", "raw.ff"], ["--max-edge", "0.5"]):
-            done = self.run_tool("solve", "room.obj", "--report", "a.json", "-v", "--no-closure", *words)
+            done = self.run_tool("solve", "room.obj", "--json", "a.json", "-v", "--no-closure", *words)
             self.assertEqual(done.returncode, GOOD, done.stderr)
             self.assertIn("closure: none: not wanted", done.stdout)
             report = json.loads((self.folder / "a.json").read_text())
@@ -236,9 +236,9 @@ class FormFactorsTest(ToolTest):
             self.find("-o", "room.ff", "--patches", "60", *words)
             info = json.loads((self.folder / "room.ff" / "info.json").read_text())
             self.assertEqual(info["options"]["contact_lines"], lines)
-            done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff")
+            done = self.run_tool("solve", "room.obj", "--json", "a.json", "--form-factors", "room.ff")
             self.assertEqual(done.returncode, GOOD, done.stderr)
-            done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff",
+            done = self.run_tool("solve", "room.obj", "--json", "a.json", "--form-factors", "room.ff",
                                  "--no-contact-lines")
             self.assertEqual(done.returncode, INPUT if lines else GOOD, done.stderr)
 
@@ -247,7 +247,7 @@ class FormFactorsTest(ToolTest):
         self.find("-o", "room.ff", "--patches", "300", "--graded-edges")
         info = json.loads((self.folder / "room.ff" / "info.json").read_text())
         self.assertEqual(info["options"]["graded_edges"], True)
-        done = self.run_tool("solve", "room.obj", "--report", "a.json", "--form-factors", "room.ff")
+        done = self.run_tool("solve", "room.obj", "--json", "a.json", "--form-factors", "room.ff")
         self.assertEqual(done.returncode, GOOD, done.stderr)
 
     def test_those_of_a_far_smaller_model_are_refused_before_it_is_cut(self):

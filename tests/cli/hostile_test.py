@@ -180,7 +180,7 @@ class HostileTest(ToolTest):
             file.write_bytes(kept)
 
     def test_form_factors_that_cannot_be(self):
-        for raw in ((), ("--raw",)):
+        for raw in ((), ("--no-closure",)):
             self.good("form-factors", "room.obj", "--patches", "40", "-o", "F", "-q", *raw)
             self.good("relight", "F", "-o", "a.ply", "-q")
             file = self.folder / "F" / "F.npy"
@@ -270,7 +270,7 @@ class HostileTest(ToolTest):
 
     def test_closed_rooms_that_absorb_nothing(self):
         """A reflectance that differs from 1 by rounding is 1: there is no solution, and no negative light."""
-        words = solve("--set", "*.reflectance=0.99999999999999989", "-o", "a.vtp", "--report", "a.json")
+        words = solve("--set", "*.reflectance=0.99999999999999989", "-o", "a.vtp", "--json", "a.json")
         done = subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)
         self.assertTrue(json.loads((self.folder / "a.json").read_text())["solution"]["singular"])

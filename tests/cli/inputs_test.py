@@ -47,7 +47,7 @@ class InputsTest(ToolTest):
         """An output of each kind is a link to the file, or a name of it that leads through a folder."""
         solve = ("solve", "scene.toml", "--patches", "40", "-q")
         for file in ("room.obj", "room.mtl", "wood.png", "spots.pts", "lamp.ies", "scene.toml"):
-            for suffix, option in ((".vtp", "-o"), (".pvd", "--series"), (".json", "--report"), (".png", "--picture"),
+            for suffix, option in ((".vtp", "-o"), (".pvd", "--series"), (".json", "--json"), (".png", "--picture"),
                                    (".csv", "--points-output")):
                 link = self.folder / ("link" + suffix)
                 link.symlink_to(file)
@@ -74,7 +74,7 @@ class InputsTest(ToolTest):
         (folder / "facts.json").symlink_to("../room.obj")
         os.rename(self.folder / "room.mtl", folder / "room.mtl")
         self.write("room.obj", ROOM.replace("mtllib room.mtl", "mtllib results/room.mtl"))
-        for command in ("form-factors", "compare", "study"):
+        for command in ("form-factors", "compare-solvers", "convergence"):
             with self.subTest(command):
                 done = self.run_tool(command, "room.obj", "--patches", "40", "-o", "results")
                 self.assertIn(done.returncode, (USAGE, OUTPUT))
@@ -108,9 +108,9 @@ class InputsTest(ToolTest):
         self.assert_refused(OUTPUT, [long], *solve, "c.vtp", "--series", long + ".pvd")
         self.assert_refused(INPUT, [long], *solve, "c.vtp", "--points", long, "--points-output", "c.csv")
         self.assert_refused(INPUT, [long], *solve, "c.vtp", "--form-factors", long)
-        for command in ("form-factors", "compare", "study"):
+        for command in ("form-factors", "compare-solvers", "convergence"):
             self.assert_refused(OUTPUT, [long], command, "room.obj", "--patches", "40", "-o", long)
-        for command in ("check", "plan", "verify"):
+        for command in ("check", "plan", "crosscheck"):
             self.assert_refused(OUTPUT, [long], command, "room.obj", "--json", long + ".json")
 
     def test_confined_to_a_folder(self):

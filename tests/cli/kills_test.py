@@ -18,7 +18,7 @@ MOST_CALLS = 400
 def solve(light):
     """A command that writes three files, which tell how bright the lamp is."""
     return [TOOL, "solve", "room.obj", "--quiet", "--patches", "30", "--set", f"lamp.exitance={light}", "-o", "out.vtp",
-            "--report", "out.json", "--points", "spots.txt", "--points-output", "spots.csv"]
+            "--json", "out.json", "--points", "spots.txt", "--points-output", "spots.csv"]
 
 
 def form_factors(samples):

@@ -35,9 +35,9 @@ class LightmapTest(ToolTest):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("holds other files than an earlier result", done.stderr)
         self.assertEqual(content(self.folder / "map"), before)
-        done = self.run_tool("solve", "room.obj", "--lightmap", "map", "--report", "map/report.json")
+        done = self.run_tool("solve", "room.obj", "--lightmap", "map", "--json", "map/report.json")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("--report: 'map/report.json' lies in the folder of --lightmap", done.stderr)
+        self.assertIn("--json: 'map/report.json' lies in the folder of --lightmap", done.stderr)
 
     def test_a_model_in_the_folder_is_not_replaced(self):
         self.run_tool("solve", "room.obj", "--patches", 100, "--lightmap", "map", "--texel", "0.5m")

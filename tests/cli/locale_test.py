@@ -30,7 +30,7 @@ COMMANDS = [
     "check ROOM.IFC",
     "plan scene.toml",
     "solve scene.toml -q --patches 60 -o a.ply -o a.glb -o a.vtp --picture a.png --size 80x60 --false-color luminance"
-    " --report report.json --points-output a.csv --points-output points.vtp",
+    " --json report.json --points-output a.csv --points-output points.vtp",
     "solve daylight.toml -q --patches 60 -o daylight.ply --set wh*.reflectance=0.25,0.5,0.75",
     "solve room.obj -q --unit ft --max-edge 1.5 --series series.pvd",
     "form-factors room.obj -q --patches 60 -o F",

@@ -24,9 +24,9 @@ class LossesTest(ToolTest):
             commands = {
                 "solve": [*few, "-o", "out.vtp"],
                 "render": ["--solution", "out.vtp", "-o", "out.png", "--size", "16x16"],
-                "compare": [*few, "-o", "compared"],
-                "study": [*few, "-o", "studied"],
-                "verify": [*few, "--paths", 100],
+                "compare-solvers": [*few, "-o", "compared"],
+                "convergence": [*few, "-o", "studied"],
+                "crosscheck": [*few, "--paths", 100],
                 "form-factors": [*few, "-o", "factors"],
             }
             for command, words in commands.items():

@@ -1,4 +1,4 @@
-"""`patchlight solve --on-demand`: the same answer as with a stored matrix that is not closed, in little memory."""
+"""`patchlight solve --method on-demand`: the same answer as with a stored matrix that is not closed, in little memory."""
 import json
 import math
 import unittest
@@ -11,7 +11,7 @@ TOLERANCE = 1e-7
 
 class OnDemandTest(ToolTest):
     def report(self, *arguments, code=0):
-        done = self.run_tool("solve", "room.obj", "--solver", "progressive", "--report", "report.json", *arguments)
+        done = self.run_tool("solve", "room.obj", "--solver", "progressive", "--json", "report.json", *arguments)
         self.assertEqual(done.returncode, code, done.stderr)
         return json.loads((self.folder / "report.json").read_text())
 
@@ -21,7 +21,7 @@ class OnDemandTest(ToolTest):
         """Made once."""
         size = ("--patches", 300, "--tolerance", TOLERANCE)
         if not self.reports:
-            self.reports.extend([self.report(*size, "--no-closure"), self.report(*size, "--on-demand")])
+            self.reports.extend([self.report(*size, "--no-closure"), self.report(*size, "--method", "on-demand")])
         return self.reports
 
     def difference(self, report, band):
@@ -73,7 +73,7 @@ class OnDemandTest(ToolTest):
 
     def test_every_output_is_written(self):
         self.write("spots.txt", "0 0 0 0 0 1\n")
-        done = self.run_tool("solve", "room.obj", "--patches", 200, "--solver", "progressive", "--on-demand", "-v", "-o",
+        done = self.run_tool("solve", "room.obj", "--patches", 200, "--solver", "progressive", "--method", "on-demand", "-v", "-o",
                              "a.vtp", "-o", "a.glb", "--series", "a.pvd", "--picture", "a.png", "--size", "80x60",
                              "--points", "spots.txt")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -84,7 +84,7 @@ class OnDemandTest(ToolTest):
 
     def test_a_first_picture_after_a_share_of_the_rows(self):
         """Rows are the lamps' and one per shot. What is under way is estimated for the picture; the summary says so."""
-        report = self.report("--patches", 400, "--on-demand", "--max-rows", "10%", "--picture", "early.png",
+        report = self.report("--patches", 400, "--method", "on-demand", "--max-rows", "10%", "--picture", "early.png",
                              "--size", "80x60", code=NOT_CONVERGED)
         last = report["solution"]["iterations"][-1]
         self.assertEqual(report["request"]["max_rows"], 0.1)
@@ -98,19 +98,19 @@ class OnDemandTest(ToolTest):
 
     def test_a_number_of_rays_takes_rays(self):
         def report_with(*options):
-            done = self.run_tool("solve", "room.obj", "--patches", 200, "--report", "report.json", *options)
+            done = self.run_tool("solve", "room.obj", "--patches", 200, "--json", "report.json", *options)
             self.assertEqual(done.returncode, 0, done.stderr)
             return json.loads((self.folder / "report.json").read_text())
 
         report = report_with("--rays", 128)
         self.assertEqual((report["plan"]["storage"], report["plan"]["rays"], report["request"]["rays"]),
                          ("rays", 128, 128))
-        fewer = report_with("--storage", "rays")
+        fewer = report_with("--method", "rays")
         self.assertEqual(fewer["plan"]["rays"], 64)
         self.assertLess(report["relative_error"]["form_factor"], fewer["relative_error"]["form_factor"])
-        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--rays", 128, "--storage", "tiles")
+        done = self.run_tool("solve", "room.obj", "-o", "a.vtp", "--rays", 128, "--method", "pairs")
         self.assertEqual(done.returncode, USAGE)
-        self.assertIn("--rays: found with --storage tiles; it needs --storage rays", done.stderr)
+        self.assertIn("--rays: found with --method pairs; it needs --method rays", done.stderr)
 
     def test_shares_of_rows_that_are_refused(self):
         for text in ("5", "0%", "-5%", "%", "5%%", "nan%", "five%"):
@@ -124,9 +124,9 @@ class OnDemandTest(ToolTest):
     def test_needs_no_memory_for_pairs(self):
         """4,000 patches: 32 MB for the pairs, 50 MB for the program."""
         size = ("--patches", 4000, "--memory", "75MB", "--max-iterations", 0)
-        refused = self.run_tool("solve", "room.obj", "--solver", "progressive", "--report", "report.json", *size)
+        refused = self.run_tool("solve", "room.obj", "--solver", "progressive", "--json", "report.json", *size)
         self.assertEqual(refused.returncode, MEMORY, refused.stderr)
-        accepted = self.report(*size, "--on-demand", code=NOT_CONVERGED)
+        accepted = self.report(*size, "--method", "on-demand", code=NOT_CONVERGED)
         self.assertGreater(accepted["mesh"]["patches"], 3000)
         self.assertLess(accepted["memory_peak_bytes"], 75e6)
 

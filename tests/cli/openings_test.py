@@ -295,7 +295,7 @@ class OpeningsTest(ToolTest):
             for extension in FORMATS:
                 turned = 'rotate = [{ axis = "x", degrees = 90 }]' if extension == "gltf" else ""
                 self.write("rooms.toml", ROOMS.format(extension, turned))
-                done = self.run_tool("solve", "rooms.toml", "--patches", 1500, "--keep-mesh", "--report", "report.json",
+                done = self.run_tool("solve", "rooms.toml", "--patches", 1500, "--no-refine", "--json", "report.json",
                                      "-q")
                 self.assertEqual((done.returncode, done.stderr), (0, ""), extension)
                 group = json.loads((self.folder / "report.json").read_text())["sensors"]["groups"][0]

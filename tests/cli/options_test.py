@@ -38,7 +38,7 @@ class OptionsTest(ToolTest):
 
     def test_lengths_take_units_and_shares_percent(self):
         def report(*words):
-            self.good("solve", "room.obj", "--unit", "cm", "--report", "report.json", "-q", *words)
+            self.good("solve", "room.obj", "--unit", "cm", "--json", "report.json", "-q", *words)
             return json.loads((self.folder / "report.json").read_text())
 
         bare = report("--max-edge", "40", "--set", "white.reflectance=0.3")
@@ -51,7 +51,7 @@ class OptionsTest(ToolTest):
     def test_solvers_that_serve_rows_of_rays_leave_the_storage_open(self):
         # More than 10,000 patches: pairs would take gigabytes.
         for solver in ("gmres", "bicgstab"):
-            self.good("solve", "room.obj", "--patches", "11000", "--solver", solver, "--report", "report.json", "-q")
+            self.good("solve", "room.obj", "--patches", "11000", "--solver", solver, "--json", "report.json", "-q")
             report = json.loads((self.folder / "report.json").read_text())
             self.assertEqual(report["plan"]["storage"], "rays", solver)
             self.assertEqual(report["plan"]["solver"], solver)
@@ -59,7 +59,7 @@ class OptionsTest(ToolTest):
     def test_maintained_lamps_give_their_share(self):
         # The light is linear in the lamps, and all of it is theirs.
         def irradiances(*words, scene="scene.toml"):
-            self.good("solve", scene, "--patches", "100", "--report", "report.json", "-q", *words)
+            self.good("solve", scene, "--patches", "100", "--json", "report.json", "-q", *words)
             report = json.loads((self.folder / "report.json").read_text())
             return ([m["irradiance_mean_W_m2"][0] for m in report["materials"]], report["input"]["notes"])
 
@@ -84,9 +84,9 @@ class OptionsTest(ToolTest):
 
     def test_all_that_read_a_model_take_the_same(self):
         model = ["--format", "--unit", "--set", "--up", "--confine", "--sides"]
-        effects = ["--force", "--skip"]
-        for command, options in (("solve", model + effects), ("plan", model + effects), ("verify", model + effects),
-                                 ("compare", model + effects), ("study", model + effects),
+        effects = ["--enable", "--disable"]
+        for command, options in (("solve", model + effects), ("plan", model + effects), ("crosscheck", model + effects),
+                                 ("compare-solvers", model + effects), ("convergence", model + effects),
                                  ("form-factors", model + effects), ("check", model),
                                  ("relight", ["--set", "--up"] + effects)):
             words = [line.split()[0] for line in self.good(command, "--help").splitlines() if line.startswith("  -")]
@@ -98,44 +98,44 @@ class OptionsTest(ToolTest):
         """The luminaire gives far more than the bar: with it on one side alone both would differ."""
         self.write("scene.toml", SCENE)
         means = []
-        for skip in ((), ("--skip", "luminaires")):
-            self.good("verify", "scene.toml", "--patches", 400, "--paths", 1024, "--bar", "5%", "--json", "a.json", *skip)
+        for skip in ((), ("--disable", "luminaires")):
+            self.good("crosscheck", "scene.toml", "--patches", 400, "--paths", 1024, "--margin", "5%", "--json", "a.json", *skip)
             checked = json.loads((self.folder / "a.json").read_text())["checked"]
             means.append(sum(patch["traced_W_m2"][0] for patch in checked) / len(checked))
         self.assertGreater(means[0], 3 * means[1])
 
     def test_verify_needs_a_bar_where_errors_are_not_known(self):
-        for effect in ("closure", "interreflection"):
-            self.refused([effect, "--bar"], "verify", "room.obj", "--skip", effect)
-        self.good("verify", "room.obj", "--patches", 400, "--paths", 1024, "--skip", "closure", "--bar", "5%")
+        for words in (["--no-closure"], ["--disable", "interreflection"]):
+            self.refused([" ".join(words), "--margin"], "crosscheck", "room.obj", *words)
+        self.good("crosscheck", "room.obj", "--patches", 400, "--paths", 1024, "--no-closure", "--margin", "5%")
         # Paths simulate what the solution leaves out.
-        done = self.run_tool("verify", "room.obj", "--patches", 400, "--paths", 256, "--skip", "interreflection", "--bar", "2%")
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 400, "--paths", 256, "--disable", "interreflection", "--margin", "2%")
         self.assertIn("DISAGREES", done.stdout)
 
     def test_form_factors_of_sides_that_are_forced(self):
         rows = {}
-        for name, words in (("auto", ()), ("forced", ("--force", "backs")), ("both", ("--sides", "both"))):
+        for name, words in (("auto", ()), ("forced", ("--enable", "backs")), ("both", ("--sides", "both"))):
             self.good("form-factors", "room.obj", "--patches", 100, "-o", name, "-q", *words)
             sides = json.loads((self.folder / name / "scene.json").read_text())["kept_sides"]
             rows[name] = sum(sides["front"]) + sum(sides["back"])
         self.assertLess(rows["auto"], rows["forced"])
         self.assertLessEqual(rows["forced"], rows["both"])
-        self.good("form-factors", "room.obj", "--patches", 100, "-o", "raw", "-q", "--skip", "closure")
+        self.good("form-factors", "room.obj", "--patches", 100, "-o", "raw", "-q", "--no-closure")
         self.assertIsNone(json.loads((self.folder / "raw" / "info.json").read_text())["closure"])
-        self.refused(["sun", "reach"], "form-factors", "room.obj", "-o", "F", "--skip", "sun")
+        self.refused(["sun", "reach"], "form-factors", "room.obj", "-o", "F", "--disable", "sun")
 
     def test_relight_and_compare_decide_about_effects(self):
         self.good("form-factors", "room.obj", "--patches", 100, "-o", "F", "-q")
         radiosity = []
-        for words in ((), ("--skip", "interreflection")):
-            self.good("relight", "F", "-q", "--report", "a.json", *words)
+        for words in ((), ("--disable", "interreflection")):
+            self.good("relight", "F", "-q", "--json", "a.json", *words)
             radiosity.append(json.loads((self.folder / "a.json").read_text())["energy_balance"]["absorbed_W"][0])
         self.assertGreater(radiosity[0], 1.1 * radiosity[1])
-        self.refused(["occlusion", "closure"], "relight", "F", "-q", "-o", "a.ply", "--skip", "occlusion")
-        self.good("compare", "room.obj", "--patches", 100, "-o", "C", "-q", "--solvers", "cg,progressive-on-demand",
-                  "--no-series", "--force", "closure")
-        self.refused(["interreflection"], "compare", "room.obj", "-o", "D", "--skip", "interreflection")
-        self.refused(["closure"], "study", "room.obj", "-o", "D", "--skip", "closure")
+        self.refused(["occlusion", "luminaires"], "relight", "F", "-q", "-o", "a.ply", "--disable", "occlusion")
+        self.good("compare-solvers", "room.obj", "--patches", 100, "-o", "C", "-q", "--solvers", "cg,progressive-on-demand",
+                  "--no-series")
+        self.refused(["interreflection"], "compare-solvers", "room.obj", "-o", "D", "--disable", "interreflection")
+        self.refused(["--no-closure"], "convergence", "room.obj", "-o", "D", "--no-closure")
 
     def test_check_counts_the_sides_that_take_part(self):
         counts = {}

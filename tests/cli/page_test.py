@@ -20,7 +20,7 @@ class PageTest(ToolTest):
         return data_of(self.folder / "page.html")
 
     def test_solve_writes_model_report_and_picture(self):
-        data = self.made("solve", "room.obj", "--patches", 200, "--report", "room.json")
+        data = self.made("solve", "room.obj", "--patches", 200, "--json", "room.json")
         report = json.loads((self.folder / "room.json").read_text())
         self.assertEqual(data["report"]["materials"], report["materials"])
         self.assertEqual(data["report"]["energy_balance"], report["energy_balance"])
@@ -61,7 +61,7 @@ f 2 6 7 3
 """)
         self.write("day.toml", '[[model]]\nfile = "open.obj"\n[sky]\nkind = "uniform"\nilluminance = 10000\n')
         solved = self.made("solve", "day.toml", "--patches", 300, "-o", "day.vtp")["model"]
-        stored = self.made("render", "day.toml", "--solution", "day.vtp", "-o", "day.png", "--quality", "draft", "--size", "32x24")["model"]
+        stored = self.made("render", "day.toml", "--solution", "day.vtp", "-o", "day.png", "--picture-quality", "draft", "--size", "32x24")["model"]
         self.assertIn("enclosed", solved["rows"])
         self.assertEqual(stored["rows"]["enclosed"], solved["rows"]["enclosed"])
         self.assertEqual([look["name"] for look in stored["looks"]], [look["name"] for look in solved["looks"]])
@@ -76,13 +76,13 @@ f 2 6 7 3
     def test_relight_compare_study_and_render_write_pages(self):
         self.run_tool("form-factors", "room.obj", "--patches", 100, "-o", "room.ff")
         self.assertEqual(self.made("relight", "room.ff")["report"]["mesh"]["patches"] > 0, True)
-        compared = self.made("compare", "room.obj", "--patches", 100, "--solvers", "jacobi,cg", "-o", "compared")
+        compared = self.made("compare-solvers", "room.obj", "--patches", 100, "--solvers", "jacobi,cg", "-o", "compared")
         self.assertEqual([run["solver"] for run in compared["comparison"]["runs"]], ["jacobi", "cg"])
         self.assertGreater(compared["model"]["patches"], 0)
-        studied = self.made("study", "room.obj", "--patches", 100, "--sizes", 2, "--no-adaptive", "--no-estimators", "-o", "studied")
+        studied = self.made("convergence", "room.obj", "--patches", 100, "--sizes", 2, "--no-adaptive", "--no-estimators", "-o", "studied")
         self.assertGreater(len(studied["study"]["settings"]), 1)
         self.run_tool("solve", "room.obj", "--patches", 100, "-o", "room.vtp")
-        rendered = self.made("render", "room.obj", "--solution", "room.vtp", "-o", "room.png", "--quality", "draft", "--size", "40x30")
+        rendered = self.made("render", "room.obj", "--solution", "room.vtp", "-o", "room.png", "--picture-quality", "draft", "--size", "40x30")
         self.assertEqual(rendered["pictures"][0]["width"], 40)
         self.assertNotIn("report", rendered)
 
@@ -90,10 +90,10 @@ f 2 6 7 3
         done = self.run_tool("solve", "room.obj", "--html", "page.pdf")
         self.assertEqual(done.returncode, 1)
         self.assertIn("--html: found 'page.pdf'; expected a name that ends in .html", done.stderr)
-        done = self.run_tool("compare", "room.obj", "-o", "folder", "--html", "folder/page.html")
+        done = self.run_tool("compare-solvers", "room.obj", "-o", "folder", "--html", "folder/page.html")
         self.assertEqual(done.returncode, 1)
         self.assertIn("lies in the folder of -o", done.stderr)
-        done = self.run_tool("solve", "room.obj", "--html", "page.html", "--report", "page.html")
+        done = self.run_tool("solve", "room.obj", "--html", "page.html", "--json", "page.html")
         self.assertEqual(done.returncode, 1)
 
     def test_hostile_names_stay_text(self):

@@ -1,4 +1,4 @@
-"""patchlight plan: what is simulated, why and at what cost; --force and --skip, and what results say about them."""
+"""patchlight plan: what is simulated, why and at what cost; --enable and --disable, and what results say about them."""
 import json
 import math
 import unittest
@@ -7,7 +7,7 @@ from support import MATERIALS, ROOM, ToolTest, content
 
 GOOD, USAGE, INPUT = 0, 1, 2
 
-EFFECTS = ["occlusion", "interreflection", "colour", "reach", "backs", "luminaires", "sun", "sky", "textures", "mirrors",
+EFFECTS = ["occlusion", "interreflection", "color", "reach", "backs", "luminaires", "sun", "sky", "textures", "mirrors",
            "closure"]
 
 
@@ -58,13 +58,13 @@ class PlanTest(ToolTest):
         expected = json.loads((self.folder / "plan.json").read_text())["expected"]
         self.assertEqual(expected["sensors"], 1600)
         self.assertGreater(expected["sensor_cpu_seconds"], 1)
-        self.assertNotIn("--time", done.stdout)
-        done = self.run_tool(*options, "--time", "60s")
-        self.assertIn("; --time is that of the meshes: it does not have what looks at the last one, as sensors and "
+        self.assertNotIn("--time-limit", done.stdout)
+        done = self.run_tool(*options, "--time-limit", "60s")
+        self.assertIn("; --time-limit is that of the meshes: it does not have what looks at the last one, as sensors and "
                       "pictures do\n", done.stdout)
 
     def test_a_second_mesh_that_does_not_fit_is_noted(self):
-        options = ("plan", "room.obj", "--storage", "rays", "--patches", "30000", "--json", "plan.json")
+        options = ("plan", "room.obj", "--method", "rays", "--patches", "30000", "--json", "plan.json")
         said = "a second mesh, which is made where the first errs by more than 2 %, does not fit into the memory"
         done = self.run_tool(*options)
         self.assertIn("a second mesh where the first errs by more than 2 %, ", done.stdout)
@@ -82,7 +82,7 @@ class PlanTest(ToolTest):
         self.assertEqual(list(plan["by_effect"]), EFFECTS)
         on = {effect for effect, decision in plan["by_effect"].items() if decision["simulate"]}
         # The walls are not grey; all lamps are inside, so the outer sides are dark; there are no other lights.
-        self.assertEqual(on, {"occlusion", "interreflection", "colour", "reach", "closure"})
+        self.assertEqual(on, {"occlusion", "interreflection", "color", "reach", "closure"})
         self.assertLess(abs(plan["expected"]["patches"] - 1000), 100)
         self.assertGreater(plan["expected"]["seconds"], 0)
         black = self.plan("--set", "white.reflectance=0,0,0")["by_effect"]
@@ -105,7 +105,7 @@ class PlanTest(ToolTest):
         self.assertFalse(matt["mirrors"]["simulate"])
 
     def test_results_say_what_was_overruled(self):
-        done = self.run_tool("solve", "room.obj", "--patches", "200", "--skip", "occlusion", "--report", "report.json")
+        done = self.run_tool("solve", "room.obj", "--patches", "200", "--disable", "occlusion", "--json", "report.json")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         self.assertIn("by force: occlusion", done.stdout)
         report = json.loads((self.folder / "report.json").read_text())
@@ -117,13 +117,13 @@ class PlanTest(ToolTest):
         black = ("--set", "white.reflectance=0,0,0")
         done = self.run_tool("form-factors", "room.obj", "--patches", "200", "-o", "room.ff")
         self.assertEqual(done.returncode, GOOD, done.stderr)
-        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", *black, "--report", "report.json")
+        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", *black, "--json", "report.json")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         decisions = json.loads((self.folder / "report.json").read_text())["plan"]["decisions"]
         by_effect = {decision["effect"]: decision for decision in decisions}
         self.assertFalse(by_effect["interreflection"]["simulate"])
         self.assertTrue(by_effect["closure"]["simulate"], "the rows of the folder are closed")
-        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", "--skip", "closure", "--report", "r.json")
+        done = self.run_tool("solve", "room.obj", "--form-factors", "room.ff", "--no-closure", "--json", "r.json")
         self.assertEqual(done.returncode, INPUT, done.stderr)
         self.assertIn("without closure", done.stderr)
 
@@ -131,45 +131,44 @@ class PlanTest(ToolTest):
         empty = ROOM.replace("f 13 14 15 16\n", "").replace("usemtl lamp\nf 9 12 11 10\n", "usemtl lamp\nf 5 8 7 6\n")
         self.write("room.obj", empty.replace("f 5 8 7 6\nf 1 5 6 2", "f 1 5 6 2"))
         rays = {}
-        for name, options in {"planned": [], "forced": ["--force", "occlusion"]}.items():
-            done = self.run_tool("solve", "room.obj", "--patches", "200", "--report", "report.json", *options)
+        for name, options in {"planned": [], "forced": ["--enable", "occlusion"]}.items():
+            done = self.run_tool("solve", "room.obj", "--patches", "200", "--json", "report.json", *options)
             self.assertEqual(done.returncode, GOOD, done.stderr)
             rays[name] = json.loads((self.folder / "report.json").read_text())["transport"]["shadow_rays"]
         self.assertEqual(rays["planned"], 0)
         self.assertGreater(rays["forced"], 0)
 
     def test_the_storage_of_form_factors_is_that_of_the_run(self):
-        for asked, storage, solver in (((), "tiles", "cg"), (("--storage", "rays"), "rays", "gmres"),
-                                       (("--storage", "on-demand"), "on-demand", "progressive"),
+        for asked, storage, solver in (((), "tiles", "cg"), (("--method", "rays"), "rays", "gmres"),
+                                       (("--method", "on-demand"), "on-demand", "progressive"),
                                        (("--patches", 12000), "rays", "gmres")):
             plan = self.plan(*asked)
             self.assertEqual((plan["storage"], plan["solver"]), (storage, solver), asked)
             if "--patches" in asked:
                 continue
-            done = self.run_tool("solve", "room.obj", "--patches", 300, *asked, "-o", "a.vtp", "--report", "a.json")
+            done = self.run_tool("solve", "room.obj", "--patches", 300, *asked, "-o", "a.vtp", "--json", "a.json")
             self.assertEqual(done.returncode, GOOD, done.stderr)
             report = json.loads((self.folder / "a.json").read_text())
             self.assertEqual((report["plan"]["storage"], report["plan"]["solver"]), (storage, solver))
 
     def test_contradictions_are_refused(self):
         outputs = ("solve", "room.obj", "-o", "room.vtp")
-        self.assert_refused(["--force sun", "--skip sun"], *outputs, "--force", "sun", "--skip", "sun")
-        self.assert_refused(["--force closure", "--no-closure"], *outputs, "--force", "closure", "--no-closure")
-        self.assert_refused(["--force closure", "--on-demand"], *outputs, "--force", "closure", "--on-demand", "--solver",
+        self.assert_refused(["--enable sun", "--disable sun"], *outputs, "--enable", "sun", "--disable", "sun")
+        self.assert_refused(["--no-closure", "--method on-demand"], *outputs, "--no-closure", "--method", "on-demand", "--solver",
                             "progressive")
-        self.assert_refused(["--skip reach", "--sides"], *outputs, "--skip", "reach", "--sides", "both")
-        self.assert_refused(["--skip interreflection", "--accuracy"], *outputs, "--skip", "interreflection", "--accuracy",
+        self.assert_refused(["--disable reach", "--sides"], *outputs, "--disable", "reach", "--sides", "both")
+        self.assert_refused(["--disable interreflection", "--accuracy"], *outputs, "--disable", "interreflection", "--accuracy",
                             "1%")
-        self.assert_refused(["--skip closure", "--error-bars"], *outputs, "--skip", "closure", "--error-bars")
-        self.assert_refused(["--force occlusion", "--form-factors"], *outputs, "--force", "occlusion", "--form-factors",
+        self.assert_refused(["--no-closure", "--error-bars"], *outputs, "--no-closure", "--error-bars")
+        self.assert_refused(["--enable occlusion", "--form-factors"], *outputs, "--enable", "occlusion", "--form-factors",
                             "room.ff")
-        self.assert_refused(["shadows", "occlusion"], *outputs, "--skip", "shadows")
-        self.assert_refused(["--skip", "gloss"], *outputs, "--skip", "gloss")
+        self.assert_refused(["shadows", "occlusion"], *outputs, "--disable", "shadows")
+        self.assert_refused(["--disable", "gloss"], *outputs, "--disable", "gloss")
 
     def test_skipping_all_light_is_refused(self):
         self.write("sky.toml", '[[model]]\nfile = "room.obj"\n[sky]\nkind = "uniform"\nirradiance = 10\n')
         self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 0 0 0"))
-        done = self.run_tool("solve", "sky.toml", "--patches", "100", "--skip", "sky", "-o", "room.vtp")
+        done = self.run_tool("solve", "sky.toml", "--patches", "100", "--disable", "sky", "-o", "room.vtp")
         self.assertEqual(done.returncode, INPUT, done.stderr)
         self.assertIn("skipped: sky", done.stderr)
 

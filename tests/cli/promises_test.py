@@ -20,7 +20,7 @@ NAMES = ("out.vtp", "out.ply", "out.glb", "out.pvd", "out.png", "out.json", "spo
 
 def arguments(model="room.obj", picture=True):
     words = [TOOL, "solve", model, "--quiet", "--patches", "100", "-o", "out.vtp", "-o", "out.ply", "-o", "out.glb",
-             "--series", "out.pvd", "--report", "out.json", "--points", "spots.txt", "--points-output", "spots.csv"]
+             "--series", "out.pvd", "--json", "out.json", "--points", "spots.txt", "--points-output", "spots.csv"]
     return words + ["--picture", "out.png"] if picture else words
 
 
@@ -178,7 +178,7 @@ class PromisesTest(ToolTest):
                     outputs[3] = folder / "plain.pvd"
                 vtp, ply, glb, pvd, png, report, csv = outputs
                 done = subprocess.run(
-                    [TOOL, "solve", model, "--patches", "60", "-o", vtp, "-o", ply, "-o", glb, "--series", pvd, "--report",
+                    [TOOL, "solve", model, "--patches", "60", "-o", vtp, "-o", ply, "-o", glb, "--series", pvd, "--json",
                      report, "--picture", png, "--size", "80x60", "--points", "spots.txt", "--points-output", csv],
                     cwd=self.folder, capture_output=True, check=False)
                 self.assertEqual(done.returncode, 0, done.stderr)
@@ -205,7 +205,7 @@ class PromisesTest(ToolTest):
 
     def test_series_has_every_iteration_of_the_report(self):
         for solver in ((), ("--solver", "gauss-seidel")):
-            done = self.run_tool("solve", "room.obj", "--patches", 100, "--series", "a.pvd", "--report", "a.json", *solver)
+            done = self.run_tool("solve", "room.obj", "--patches", 100, "--series", "a.pvd", "--json", "a.json", *solver)
             self.assertEqual(done.returncode, 0, done.stderr)
             solution = json.loads((self.folder / "a.json").read_text())["solution"]
             self.assertEqual(solution["solver"], solver[1] if solver else "jacobi")

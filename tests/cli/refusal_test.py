@@ -26,7 +26,7 @@ class RefusalTest(ToolTest):
         self.assertEqual(content(self.folder), before)
 
     def assert_model_refused(self, named, model="room.obj"):
-        outputs = ("-o", "room.vtp", "--picture", "room.png", "--report", "room.json", "--points", "spots.txt")
+        outputs = ("-o", "room.vtp", "--picture", "room.png", "--json", "room.json", "--points", "spots.txt")
         self.assert_refused(INPUT, named, "solve", model, *outputs)
 
     def test_missing_file(self):
@@ -103,7 +103,7 @@ class RefusalTest(ToolTest):
         for size in ("2GB", "2 GB", "2e9", "1900MiB", "1.8GiB", "2000000kB"):
             with self.subTest(size):
                 named = ["40000 patches", "3.3", "--memory", "--patches"]
-                self.assert_refused(MEMORY, named, *solve, "--storage", "tiles", "--patches", 40000, "--memory", size)
+                self.assert_refused(MEMORY, named, *solve, "--method", "pairs", "--patches", 40000, "--memory", size)
         self.assert_refused(MEMORY, ["patches", "--memory"], *solve, "--max-edge", "0.005", "--memory", "1GB")
         self.assert_refused(MEMORY, ["program itself"], *solve, "--memory", "10MB")
         # What nobody has, before a single patch is made.
@@ -111,7 +111,7 @@ class RefusalTest(ToolTest):
         self.assert_refused(MEMORY, ["patches"], *solve, "--max-edge", "1e-9")
 
     def test_every_output_is_checked_before_any_is_written(self):
-        for option, output in (("--picture", "no/a.png"), ("--report", "no/a.json"), ("--points-output", "no/a.csv")):
+        for option, output in (("--picture", "no/a.png"), ("--json", "no/a.json"), ("--points-output", "no/a.csv")):
             with self.subTest(option):
                 arguments = ("solve", "room.obj", "-o", "room.vtp", "--points", "spots.txt", option, output)
                 self.assert_refused(OUTPUT, [output], *arguments)
@@ -133,7 +133,7 @@ class RefusalTest(ToolTest):
 
     def test_a_file_in_place_of_a_command(self):
         """The line that is meant, and what else takes a model."""
-        takers = "the commands solve, check, new, plan, form-factors, render, compare, study, verify"
+        takers = "the commands solve, check, init, plan, form-factors, render, compare-solvers, convergence, crosscheck"
         self.write("two words.OBJ", ROOM)
         self.write("notes.txt", "")
         for words, line in ((["room.obj"], "room.obj -o room.vtp"), (["far/missing.ifc"], "far/missing.ifc -o missing.vtp"),
@@ -191,7 +191,7 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--tolerance"], "solve", "room.obj", "-o", "a.vtp", "--tolerance")
 
     def test_options_that_need_or_exclude_another(self):
-        self.assert_refused(USAGE, ["-o", "--picture", "--report", "--points"], "solve", "room.obj")
+        self.assert_refused(USAGE, ["-o", "--picture", "--json", "--points"], "solve", "room.obj")
         self.assert_refused(USAGE, ["model"], "solve", "-o", "a.vtp")
         solve = ("solve", "room.obj", "-o", "a.vtp")
         self.assert_refused(USAGE, ["--max-edge", "--patches"], *solve, "--max-edge", "1", "--patches", "9")
@@ -199,12 +199,12 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--false-color", "--picture"], *solve, "--false-color", "luminance")
         self.assert_refused(USAGE, ["--points-output", "--points"], *solve, "--points-output", "a.csv")
         self.assert_refused(USAGE, ["--quiet", "-v"], *solve, "--quiet", "-v")
-        for option, value in (("--accuracy", "2%"), ("--time", "30s")):
-            self.assert_refused(USAGE, ["--keep-mesh", option], *solve, "--keep-mesh", option, value)
-        self.assert_refused(USAGE, ["--on-demand", "--solver progressive"], *solve, "--on-demand", "--solver", "cg")
-        on_demand = (*solve, "--on-demand", "--solver", "progressive")
+        for option, value in (("--accuracy", "2%"), ("--time-limit", "30s")):
+            self.assert_refused(USAGE, ["--no-refine", option], *solve, "--no-refine", option, value)
+        self.assert_refused(USAGE, ["--method on-demand", "--solver progressive"], *solve, "--method", "on-demand", "--solver", "cg")
+        on_demand = (*solve, "--method", "on-demand", "--solver", "progressive")
         for option, *value in (("--no-closure",), ("--form-factors", "a.ff"), ("--estimator", "area")):
-            self.assert_refused(USAGE, ["--on-demand", option], *on_demand, option, *value)
+            self.assert_refused(USAGE, ["--method on-demand", option], *on_demand, option, *value)
 
     def test_wrong_extension(self):
         self.assert_refused(USAGE, ["-o", "a.vtk", ".vtp", ".ply", ".glb"], "solve", "room.obj", "-o", "a.vtk")
@@ -212,8 +212,8 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["--picture", "a.jpg", ".png"], "solve", "room.obj", "--picture", "a.jpg")
 
     def test_one_file_for_two_purposes(self):
-        self.assert_refused(USAGE, ["room.obj"], "solve", "room.obj", "--report", "./room.obj")
-        self.assert_refused(USAGE, ["a.png"], "solve", "room.obj", "--picture", "a.png", "--report", "a.png")
+        self.assert_refused(USAGE, ["room.obj"], "solve", "room.obj", "--json", "./room.obj")
+        self.assert_refused(USAGE, ["a.png"], "solve", "room.obj", "--picture", "a.png", "--json", "a.png")
 
 
 if __name__ == "__main__":

@@ -73,11 +73,11 @@ class RelightTest(ToolTest):
                  ["--set", "lamp.exitance=0", "--set", "white.radiance=1,2,3"])
         for k, settings in enumerate(cases):
             self.good("solve", "room.obj", "--patches", "200", "--no-error-bars", "--points", "points.txt", "--points-output",
-                      f"fresh{k}.csv", "--report", f"fresh{k}.json", *EXACT, *settings)
+                      f"fresh{k}.csv", "--json", f"fresh{k}.json", *EXACT, *settings)
         self.find()
         folder = self.leave_the_folder_alone()
         for k, settings in enumerate(cases):
-            self.good("relight", folder, "--points", "points.txt", "--points-output", f"again{k}.csv", "--report",
+            self.good("relight", folder, "--points", "points.txt", "--points-output", f"again{k}.csv", "--json",
                       f"again{k}.json", *EXACT, *settings)
             self.expect_close(self.irradiance(f"again{k}.csv"), self.irradiance(f"fresh{k}.csv"), FLOAT_STORAGE)
             fresh, again = self.report(f"fresh{k}.json"), self.report(f"again{k}.json")
@@ -91,19 +91,19 @@ class RelightTest(ToolTest):
         with (self.folder / "room.mtl").open("a") as file:
             file.write("newmtl shed\nKd 0.5 0.5 0.5\n")
         self.find()
-        done = self.good("relight", "room.ff", "--report", "lit.json", "--set", "shed.exitance=1")
+        done = self.good("relight", "room.ff", "--json", "lit.json", "--set", "shed.exitance=1")
         # The shed's faces look inward, where no lamp was.
         self.assertIn("material 'shed' emits, but no light comes from it", done.stderr)
         self.assertIn("would take part that did not", done.stderr)
         # The patches stay those of then.
-        done = self.good("relight", "room.ff", "--report", "dark.json")
+        done = self.good("relight", "room.ff", "--json", "dark.json")
         self.assertNotIn("took no part", done.stderr)
         self.assertEqual(self.report("lit.json")["mesh"], self.report("dark.json")["mesh"])
 
     def test_twice_the_light_is_twice_the_irradiance(self):
         self.find()
         for name, exitance in (("one", "10,9,8"), ("two", "20,18,16")):
-            self.good("relight", "room.ff", "--report", f"{name}.json", "--set", f"lamp.exitance={exitance}")
+            self.good("relight", "room.ff", "--json", f"{name}.json", "--set", f"lamp.exitance={exitance}")
         one, two = self.report("one.json"), self.report("two.json")
         # A factor of 2 changes no digit of a sum of floating-point numbers, and the solver stops at the same iteration.
         for key in ("irradiance_min_W_m2", "irradiance_mean_W_m2", "irradiance_max_W_m2"):
@@ -117,9 +117,9 @@ class RelightTest(ToolTest):
         self.write("mm.txt", "0 0 500 0 0 1\n")
         self.good("form-factors", "mm.obj", "--unit", "mm", "-o", "mm.ff", "--patches", "200")
         words = ["--points", "mm.txt", "--camera", "-900,0,1000", "900,0,1000", "60"]
-        self.good("relight", "mm.ff", "-o", "a.vtp", "-o", "a.ply", "-o", "a.glb", "--series", "a.pvd", "--report", "a.json",
+        self.good("relight", "mm.ff", "-o", "a.vtp", "-o", "a.ply", "-o", "a.glb", "--series", "a.pvd", "--json", "a.json",
                   "--picture", "a.png", "--points-output", "a.csv", *words)
-        self.good("solve", "mm.obj", "--unit", "mm", "--form-factors", "mm.ff", "--picture", "b.png", "--report", "b.json",
+        self.good("solve", "mm.obj", "--unit", "mm", "--form-factors", "mm.ff", "--picture", "b.png", "--json", "b.json",
                   "--points-output", "b.csv", *words, "--solver", "jacobi")
         self.assertEqual((self.folder / "a.png").read_bytes(), (self.folder / "b.png").read_bytes())
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
@@ -133,15 +133,15 @@ class RelightTest(ToolTest):
             path = self.folder / file
             path.write_bytes(path.read_bytes().replace(b"white", name))
         self.find()
-        self.good("relight", "room.ff", "--report", "a.json", "--set",
+        self.good("relight", "room.ff", "--json", "a.json", "--set",
                   name.decode(errors="surrogateescape") + ".reflectance=0.1")
         self.assertEqual(self.report("a.json")["input"]["materials"], 2)
 
     def test_without_closure_takes_raw_ones_alone(self):
         self.find()
-        self.find("--raw", folder="raw.ff")
+        self.find("--no-closure", folder="raw.ff")
         self.assertEqual(self.run_tool("relight", "room.ff", "-o", "a.vtp", "--no-closure").returncode, INPUT)
-        self.good("relight", "raw.ff", "--report", "a.json", "--no-closure")
+        self.good("relight", "raw.ff", "--json", "a.json", "--no-closure")
         self.assertEqual(self.report("a.json")["transport"]["closure"], "none: not wanted")
 
     def test_a_model_without_a_lamp_is_lit_later(self):
@@ -167,7 +167,7 @@ class RelightTest(ToolTest):
         self.find()
         done = self.good("relight", "room.ff", "-o", "a.vtp")
         self.assertIn("errors from the size of the patches and from form factors: not known" + remedy, done.stdout)
-        self.find("--storage", "rays", folder="rays.ff")
+        self.find("--method", "rays", folder="rays.ff")
         done = self.good("relight", "rays.ff", "-o", "a.vtp")
         self.assertRegex(done.stdout, r"error of the rays: \S+ % of the reflected light, which more rays make smaller; ")
         self.assertIn("what the size of the patches errs is not known" + remedy, done.stdout)
@@ -231,9 +231,9 @@ class RelightTest(ToolTest):
 
     def test_rows_of_rays_take_any_light(self):
         """B is linear in E: a lamp of twice the exitance gives twice the light, to the digits written."""
-        self.find("--storage", "rays", folder="rays.ff")
+        self.find("--method", "rays", folder="rays.ff")
         for name, words in (("once", ["--set", "lamp.radiance=10"]), ("twice", ["--set", "lamp.radiance=20"])):
-            self.good("relight", "rays.ff", *words, "--report", name + ".json", "-o", name + ".vtp")
+            self.good("relight", "rays.ff", *words, "--json", name + ".json", "-o", name + ".vtp")
         once, twice = self.report("once.json"), self.report("twice.json")
         self.assertFalse(once["transport"]["shadow_rays"])
         for a, b in zip(once["energy_balance"]["absorbed_W"], twice["energy_balance"]["absorbed_W"]):
@@ -262,11 +262,11 @@ points = [[0.1, 0.2, 0.5, 0, 0, 1]]
         mesh = ["--sides", "both", "--patches", "200", "--no-contact-lines"]
         for name, lux in (("day", 10000), ("dull", 5000)):
             self.write(name + ".toml", '[[model]]\nfile = "room.obj"\n' + lights % lux)
-            self.good("solve", name + ".toml", *mesh, "--no-error-bars", "-o", name + ".vtp", "--report",
+            self.good("solve", name + ".toml", *mesh, "--no-error-bars", "-o", name + ".vtp", "--json",
                       name + ".json", *EXACT)
         self.good("form-factors", "day.toml", *mesh, "-o", "day.ff")
-        self.good("relight", "day.ff", "-o", "again.vtp", "--report", "again.json", *EXACT)
-        self.good("relight", "day.ff", "--sky", "overcast:5000lx", "--ground", "0", "-o", "less.vtp", "--report", "less.json", *EXACT)
+        self.good("relight", "day.ff", "-o", "again.vtp", "--json", "again.json", *EXACT)
+        self.good("relight", "day.ff", "--sky", "overcast:5000lx", "--ground", "0", "-o", "less.vtp", "--json", "less.json", *EXACT)
         for fresh, again in (("day", "again"), ("dull", "less")):
             for key in ("arriving_W", "absorbed_W"):
                 for a, b in zip(self.report(fresh + ".json")["energy_balance"][key],
@@ -304,15 +304,15 @@ f 9 10 11 12
 """)
         self.write("panes.mtl", "newmtl wall\nKd 0.6 0.6 0.6\nKe 1 1 1\nnewmtl mirror\nKd 0 0 0\nKs 0.8 0.8 0.8\n"
                    "illum 3\nnewmtl pane\nKd 0 0 0\nd 0.5\nTf 0.8 0.8 0.8\n")
-        self.good("form-factors", "panes.obj", "--storage", "rays", "--patches", "200", "-o", "panes.ff")
+        self.good("form-factors", "panes.obj", "--method", "rays", "--patches", "200", "-o", "panes.ff")
         info = json.loads((self.folder / "panes.ff" / "info.json").read_text())
         self.assertTrue(info["specular"])
         self.assertIn("pane", info["classes"])
         self.assertIn("mirror mirrored", info["classes"])
         colours = ["--set", "pane.transmittance=0.8,0.1,0.05", "--set", "mirror.specular_reflectance=0.9,0.7,0.3"]
-        self.good("relight", "panes.ff", *colours, "--report", "again.json", "-o", "again.vtp")
-        self.good("form-factors", "panes.obj", "--storage", "rays", "--patches", "200", *colours, "-o", "red.ff")
-        self.good("relight", "red.ff", "--report", "fresh.json", "-o", "fresh.vtp")
+        self.good("relight", "panes.ff", *colours, "--json", "again.json", "-o", "again.vtp")
+        self.good("form-factors", "panes.obj", "--method", "rays", "--patches", "200", *colours, "-o", "red.ff")
+        self.good("relight", "red.ff", "--json", "fresh.json", "-o", "fresh.vtp")
         again, fresh = self.report("again.json"), self.report("fresh.json")
         for a, b in zip(again["energy_balance"]["absorbed_W"], fresh["energy_balance"]["absorbed_W"]):
             self.assertAlmostEqual(a / b, 1, delta=1e-9)

@@ -75,7 +75,7 @@ class RenderTest(ToolTest):
 
     def test_a_picture_of_a_file_is_that_of_the_run(self):
         # The file has single precision: the picture is that of the run, but for rounding to eight bits.
-        self.solve("--picture", "of_run.hdr", "--quality", "final", "--size", "24x16")
+        self.solve("--picture", "of_run.hdr", "--picture-quality", "final", "--size", "24x16")
         self.good("render", "room.obj", "--solution", "room.vtp", "-o", "of_file.hdr", *SMALL)
         (run_header, run), (file_header, file) = (radiances(self.bytes_of(name)) for name in ("of_run.hdr", "of_file.hdr"))
         self.assertEqual(run_header, file_header)
@@ -183,7 +183,7 @@ class RenderTest(ToolTest):
         for words, named in (
             (["-o", "a.gif"], "-o"),
             (["-o", "a.png", "--size", "12"], "--size"),
-            (["-o", "a.png", "--quality", "draft", "--picture-error", "1%"], "--picture-error"),
+            (["-o", "a.png", "--picture-quality", "draft", "--picture-error", "1%"], "--picture-error"),
             (["-o", "a.hdr", "--false-color", "luminance"], "--false-color"),
             (["-o", "a.png", "--projection", "panorama"], "--projection"),
             (["-o", "a.png", "--view", "one/two", "--view", "one:two"], "-o"),

@@ -5,13 +5,12 @@ import math
 import os
 import pathlib
 import re
-import shutil
 import unittest
 
 from support import ToolTest
 
 MESHES = pathlib.Path(os.environ["PATCHLIGHT_MESHES"])
-FORMATS = MESHES.parent / "docs" / "formats.md"
+PAGE = MESHES.parent / "docs" / "reference" / "scene-file.md"
 USAGE, INPUT = 1, 2
 
 # Black ground of 40 x 40 m, so that nothing is reflected.
@@ -49,7 +48,7 @@ class SceneFileTest(ToolTest):
         # The dividing wall of the two rooms is 0.1 m thick, from x = 4, and has a door from y = 1 to 1.9.
         points = ", ".join(f"[{x}, {y}, 0.8, 0, 0, 1]" for x in (3, 4.05, 5) for y in (0.5, 1.4, 2.4))
         rows = self.readings(f'[[model]]\nfile = "{MESHES}/two_rooms.obj"\n[[sensors]]\nname = "plane"\n'
-                             f'points = [{points}]\n', "--patches", 500, "--report", "report.json")
+                             f'points = [{points}]\n', "--patches", 500, "--json", "report.json")
         inside = [(float(r["x"]), float(r["y"])) for r in rows if r["inside_wall"] == "1"]
         self.assertEqual(inside, [(4.05, 0.5), (4.05, 2.4)])
         read = [float(r["E_g"]) for r in rows if r["inside_wall"] == "0"]
@@ -60,17 +59,15 @@ class SceneFileTest(ToolTest):
         self.assertGreater(group["min"], 0.01)
 
     def test_the_examples_of_the_documentation_are_solved(self):
-        examples = re.findall(r"```toml\n(.*?)```", FORMATS.read_text(), re.DOTALL)
-        self.assertEqual(len(examples), 2)
-        for name in ("two_rooms", "cornell_box"):
-            for extension in (".obj", ".mtl"):
-                shutil.copy(MESHES / (name + extension), self.folder)
-        self.write("facade.pts", "1.4 1.4 -0.5 0 0 -1\n1.4 2.5 -0.5 0 0 -1\n")
+        examples = re.findall(r"```(?:toml|text)\n# file: (\S+)\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+        self.assertEqual([name for name, _ in examples], ["electric.toml", "daylight.toml", "facade.pts"])
+        (self.folder / "meshes").symlink_to(MESHES)
+        for name, text in examples:
+            self.write(name, text)
         sensors = []
-        for k, example in enumerate(examples):
-            self.write(f"{k}.toml", example)
-            self.solve(f"{k}.toml", "--patches", 200, "--points-output", f"{k}.csv", "--points-output", f"{k}.vtp",
-                       "--report", f"{k}.json")
+        for k, scene in enumerate(("electric.toml", "daylight.toml")):
+            self.solve(scene, "--patches", 200, "--points-output", f"{k}.csv", "--points-output", f"{k}.vtp",
+                       "--json", f"{k}.json")
             rows = self.rows(f"{k}.csv")
             self.assertTrue(all(float(row["E_v_lx"]) >= 0 for row in rows if row["inside_wall"] == "0"))
             report = json.loads((self.folder / f"{k}.json").read_text())

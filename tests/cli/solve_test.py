@@ -11,8 +11,8 @@ import unittest
 
 from support import TOOL, ToolTest
 
-OPTIONS = """--output --series --report --picture --false-color --camera --view --points --points-output --format --unit --up
---sides --set --max-edge --patches --accuracy --time --interest --error-bars --on-demand --solver --tolerance
+OPTIONS = """--output --series --json --picture --false-color --camera --view --points --points-output --format --unit --up
+--sides --set --max-edge --patches --accuracy --time-limit --focus --error-bars --method --solver --tolerance
 --max-iterations --samples --seed --threads --memory --discard --quiet --verbose --help""".split()
 
 NOT_CONVERGED = 3
@@ -45,7 +45,7 @@ class SolveTest(ToolTest):
         text = self.run_tool("solve", "--help").stdout
         entries = re.split(r"\n  (?=-)", text.split("The model:")[1])[1:]
         self.assertGreater(len(entries), 15)
-        always_given = ("-h,", "-o,", "--series", "--report", "--picture", "--points FILE")
+        always_given = ("-h,", "-o,", "--series", "--json", "--picture", "--points FILE")
         for entry in entries:
             if not entry.startswith(always_given):
                 self.assertIn("default", entry)
@@ -56,7 +56,7 @@ class SolveTest(ToolTest):
         self.assertRegex(done.stdout, r"\Apatchlight \d+\.\d+\.\d+\n\Z")
 
     def test_all_outputs(self):
-        done = self.solve("--patches", 300, "-o", "out.vtp", "--picture", "out.png", "--report", "out.json",
+        done = self.solve("--patches", 300, "-o", "out.vtp", "--picture", "out.png", "--json", "out.json",
                           "--points", "spots.txt")
         for name in ("out.vtp", "out.png", "out.json", "spots.irradiance.csv"):
             self.assertIn(name, done.stdout)
@@ -102,7 +102,7 @@ class SolveTest(ToolTest):
         reason, as in the closed room."""
         box = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell_box.obj"
         for model, is_said in ((box, True), ("room.obj", False)):
-            done = self.run_tool("solve", model, "--storage", "rays", "--patches", 900, "--report", "a.json")
+            done = self.run_tool("solve", model, "--method", "rays", "--patches", 900, "--json", "a.json")
             report = json.loads(self.read("a.json"))
             imbalance = report["energy_balance"]["imbalance"]
             usual = (64 * report["mesh"]["patches"]) ** -0.5
@@ -112,7 +112,7 @@ class SolveTest(ToolTest):
             self.assertEqual((found[2] is not None, imbalance > usual / 10), (is_said, is_said), done.stdout)
             if is_said:
                 self.assertAlmostEqual(float(found[3]) / usual, 1, delta=0.5)
-        pairs = self.run_tool("solve", box, "--storage", "tiles", "--patches", 900, "--report", "b.json")
+        pairs = self.run_tool("solve", box, "--method", "pairs", "--patches", 900, "--json", "b.json")
         self.assertRegex(pairs.stdout, r"imbalance \S+ of the flux\n")
 
     def test_same_bytes_for_any_number_of_threads(self):
@@ -148,8 +148,8 @@ class SolveTest(ToolTest):
 
     def test_what_noise_of_rays_does_not_explain_is_not_put_down_to_it(self):
         """After two bounces some 15 % of the flux are still under way, and one over the root of all rays is 0.4 %."""
-        done = self.solve("--patches", 900, "--storage", "rays", "--solver", "jacobi", "--max-iterations", 2,
-                          "--report", "a.json", code=NOT_CONVERGED)
+        done = self.solve("--patches", 900, "--method", "rays", "--solver", "jacobi", "--max-iterations", 2,
+                          "--json", "a.json", code=NOT_CONVERGED)
         self.assertRegex(done.stdout, r"imbalance \S+ of the flux, more than the noise of the rays explains: up to a few")
 
     def test_interrupt_leaves_no_file(self):
@@ -163,7 +163,7 @@ class SolveTest(ToolTest):
 
     def test_interrupt_writes_what_is_there(self):
         """A solution on demand takes minutes; its last iterate is there at any time."""
-        options = ["--on-demand", "--patches", "4000", "--report", "out.json"]
+        options = ["--method", "on-demand", "--patches", "4000", "--json", "out.json"]
         outputs = {"out.vtp", "out.png", "out.json"}
         for sent in SIGNALS:
             with self.subTest(sent.name):
@@ -187,7 +187,7 @@ class SolveTest(ToolTest):
     def test_interrupt_tells_of_no_sensor_that_was_not_read(self):
         """The solution takes a moment, its 300,000 points take minutes."""
         (self.folder / "many.txt").write_text("".join(f"{0.6 + k * 1e-6} 0.6 0.5 0 0 1\n" for k in range(300_000)))
-        options = ["--patches", "500", "--points", "many.txt", "--points-output", "read.csv", "--report", "out.json"]
+        options = ["--patches", "500", "--points", "many.txt", "--points-output", "read.csv", "--json", "out.json"]
         shown, code = self.interrupt_in_stage(rb"gather [1-9]", signal.SIGINT, options)
         self.assertEqual(code, 128 + signal.SIGINT, shown)
         self.assertLessEqual({"out.vtp", "out.json"}, self.names())
@@ -199,12 +199,12 @@ class SolveTest(ToolTest):
         for sent in SIGNALS:
             with self.subTest(sent.name):
                 before = self.names()
-                options = ["--on-demand", "--patches", "4000", "--discard"]
+                options = ["--method", "on-demand", "--patches", "4000", "--discard"]
                 shown, code = self.interrupt_in_stage(rb"solve [1-9]", sent, options)
                 self.assertEqual(code, 128 + sent, shown)
                 self.assertEqual(self.names(), before)
 
-    def interrupt_in_stage(self, stage, sent, options=("--patches", "12000", "--storage", "tiles", "--samples", "4096")):
+    def interrupt_in_stage(self, stage, sent, options=("--patches", "12000", "--method", "pairs", "--samples", "4096")):
         """Starts a run of minutes on a terminal, sends the signal once the stage shows; what was shown, the exit code."""
         ours, theirs = pty.openpty()
         command = [TOOL, "solve", "room.obj", *options, "-o", "out.vtp", "--picture", "out.png"]

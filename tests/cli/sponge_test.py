@@ -115,9 +115,9 @@ def complaint(done, command):
 
 
 def run(folder, name, command):
-    arguments = {"check": ["check", name, "--vtk", "problems.vtp", "--json", "check.json"],
+    arguments = {"check": ["check", name, "--problems", "problems.vtp", "--json", "check.json"],
                  "solve": ["solve", name, "--patches", "60", "--samples", "4", "--threads", "1",
-                           "--report", "report.json"]}[command]
+                           "--json", "report.json"]}[command]
     try:
         done = subprocess.run([TOOL, *arguments], cwd=folder, capture_output=True, timeout=SECONDS, check=False,
                               encoding="utf-8", errors="replace")

@@ -1,4 +1,4 @@
-"""patchlight study: what accuracy costs."""
+"""patchlight convergence: what accuracy costs."""
 import csv
 import json
 import unittest
@@ -17,7 +17,7 @@ COLUMNS = ["sweep", "patches", "estimator", "samples", "tolerance", "seconds", "
 
 class StudyTest(ToolTest):
     def study(self, patches, *words):
-        done = self.run_tool("study", "room.obj", "--patches", patches, "-o", "out", "--no-adaptive", *words)
+        done = self.run_tool("convergence", "room.obj", "--patches", patches, "-o", "out", "--no-adaptive", *words)
         self.assertEqual(done.returncode, GOOD, done.stderr)
         with (self.folder / "out" / "study.csv").open(newline="") as lines:
             rows = list(csv.DictReader(lines))
@@ -59,26 +59,26 @@ class StudyTest(ToolTest):
         self.study(100, "--no-estimators", "--sizes", 2)
         (self.folder / "out" / "thesis.tex").write_text("mine")
         before = content(self.folder)
-        done = self.run_tool("study", "room.obj", "--patches", 100, "-o", "out")
+        done = self.run_tool("convergence", "room.obj", "--patches", 100, "-o", "out")
         self.assertEqual(done.returncode, OUTPUT)
         self.assertEqual(content(self.folder), before)
 
     def test_refusals(self):
         for words in (["--sizes", "1"], ["--tolerance", "1"], ["--estimator", "area"], ["--patches", "0"]):
-            done = self.run_tool("study", "room.obj", "-o", "out", *words)
+            done = self.run_tool("convergence", "room.obj", "-o", "out", *words)
             self.assertEqual(done.returncode, USAGE, words)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
             self.assertIn(words[0], done.stderr)
-        self.assertEqual(self.run_tool("study", "room.obj").returncode, USAGE)
+        self.assertEqual(self.run_tool("convergence", "room.obj").returncode, USAGE)
 
     def test_a_reference_that_does_not_fit_is_refused(self):
-        done = self.run_tool("study", "room.obj", "--patches", 4000, "--memory", "150MB", "-o", "out")
+        done = self.run_tool("convergence", "room.obj", "--patches", 4000, "--memory", "150MB", "-o", "out")
         self.assertEqual(done.returncode, MEMORY, done.stderr)
         self.assertIn("reference", done.stderr)
         self.assertFalse((self.folder / "out").exists())
 
     def test_trapped_light_is_said(self):
-        done = self.run_tool("study", "room.obj", "--patches", 100, "-o", "out", "--set", "white.reflectance=1",
+        done = self.run_tool("convergence", "room.obj", "--patches", 100, "-o", "out", "--set", "white.reflectance=1",
                              "--set", "lamp.reflectance=1")
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)
         self.assertIn("reflect all of it", done.stderr)

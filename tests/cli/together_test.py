@@ -24,7 +24,7 @@ class TogetherTest(ToolTest):
 
     def test_runs_with_one_series(self):
         """Of ten at a time the last decides; at every moment the .pvd names files that are there."""
-        runs = [subprocess.Popen(self.words(k + 1, "--report", "a.json"), cwd=self.folder, stderr=subprocess.PIPE) for k in range(10)]
+        runs = [subprocess.Popen(self.words(k + 1, "--json", "a.json"), cwd=self.folder, stderr=subprocess.PIPE) for k in range(10)]
         pvd = self.folder / "a.pvd"
         while any(run.poll() is None for run in runs):
             if pvd.exists():
@@ -42,11 +42,11 @@ class TogetherTest(ToolTest):
 
     def test_one_that_cannot_be_written_leaves_all_as_they_were(self):
         """The last file is too long for the disk quota of the process."""
-        subprocess.run(self.words(1, "--report", "a.json"), cwd=self.folder, check=True)
+        subprocess.run(self.words(1, "--json", "a.json"), cwd=self.folder, check=True)
         before = content(self.folder)
         limit = (self.folder / "a.ply").stat().st_size + 100
         self.assertGreater((self.folder / "a.json").stat().st_size, limit)
-        failed = subprocess.run(["prlimit", f"--fsize={limit}", *self.words(2, "--report", "a.json")], cwd=self.folder,
+        failed = subprocess.run(["prlimit", f"--fsize={limit}", *self.words(2, "--json", "a.json")], cwd=self.folder,
                                 capture_output=True, check=False)
         self.assertEqual(failed.returncode, OUTPUT, failed.stderr)
         self.assertEqual(content(self.folder), before)

@@ -1,4 +1,4 @@
-"""patchlight validate: cases with known answers, with a verdict each."""
+"""patchlight selftest: cases with known answers, with a verdict each."""
 import json
 import os
 import pty
@@ -12,7 +12,7 @@ GOOD, USAGE, OUTPUT = 0, 1, 6
 
 class ValidateTest(ToolTest):
     def test_table_and_json_tell_the_same(self):
-        done = self.run_tool("validate", "--json", "validation.json")
+        done = self.run_tool("selftest", "--json", "validation.json")
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
         report = json.loads((self.folder / "validation.json").read_text())
         self.assertTrue(report["sound"])
@@ -28,7 +28,7 @@ class ValidateTest(ToolTest):
 
     def test_a_terminal_shows_which_case_is_at_work(self):
         ours, theirs = pty.openpty()
-        with subprocess.Popen([TOOL, "validate"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs) as process:
+        with subprocess.Popen([TOOL, "selftest"], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=theirs) as process:
             os.close(theirs)
             shown = b""
             while b"case 2 of " not in shown:  # the end of the run closes the terminal, which is an error here
@@ -40,7 +40,7 @@ class ValidateTest(ToolTest):
     def test_refusals(self):
         for words, code in ((["--json", "a.txt"], USAGE), (["--jsn"], USAGE), (["room.obj"], USAGE),
                             (["--threads", "-1"], USAGE), (["--json", "missing/a.json"], OUTPUT)):
-            self.assertEqual(self.run_tool("validate", *words).returncode, code, words)
+            self.assertEqual(self.run_tool("selftest", *words).returncode, code, words)
 
 
 if __name__ == "__main__":

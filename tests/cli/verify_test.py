@@ -1,4 +1,4 @@
-"""patchlight verify: a solution against path tracing."""
+"""patchlight crosscheck: a solution against path tracing."""
 import json
 import os
 import pathlib
@@ -12,7 +12,7 @@ CORNELL_BOX = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell
 
 class VerifyTest(ToolTest):
     def test_cornell_box_agrees_and_the_json_tells_the_same(self):
-        done = self.run_tool("verify", CORNELL_BOX, "--patches", 2000, "--sides", "front", "--json", "out.json")
+        done = self.run_tool("crosscheck", CORNELL_BOX, "--patches", 2000, "--sides", "front", "--json", "out.json")
         self.assertEqual((done.returncode, done.stderr), (GOOD, ""), done.stdout)
         lines = done.stdout.splitlines()
         self.assertRegex(lines[0], r"^agrees: with the error bars of the patches, \S+ % as a whole \(mesh ")
@@ -45,7 +45,7 @@ class VerifyTest(ToolTest):
 
     def test_figures_say_what_they_tell(self):
         """Between the verdict and the table: what is stated, then what is found, each once in words."""
-        done = self.run_tool("verify", "room.obj", "--patches", 300, "--paths", 512)
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 300, "--paths", 512)
         figures = [line.strip() for line in done.stdout.splitlines() if line.startswith("  ")]
         for figure, tells in zip(figures, (r"bars \S+ % of the light: how far .* is stated to be off",
                                            r"typical error of a patch .*: how far each by itself is off",
@@ -56,24 +56,24 @@ class VerifyTest(ToolTest):
 
     def test_quiet_says_nothing_where_they_agree(self):
         for option in ("-q", "--quiet"):
-            done = self.run_tool("verify", "room.obj", "--patches", 300, "--paths", 512, option)
+            done = self.run_tool("crosscheck", "room.obj", "--patches", 300, "--paths", 512, option)
             self.assertEqual((done.returncode, done.stdout, done.stderr), (GOOD, "", ""))
-        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "0%", "--paths", 16384, "-q")
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 50, "--margin", "0%", "--paths", 16384, "-q")
         self.assertEqual((done.returncode, done.stdout), (DIFFERS, ""))
         self.assertRegex(done.stderr, r"^patchlight: warning: DISAGREES: [^\n]*\n$")
 
     def test_two_rooms_agree(self):
-        done = self.run_tool("verify", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front")
+        done = self.run_tool("crosscheck", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front")
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
 
     def test_two_rooms_agree_by_rows_of_rays(self):
         """Without pairs: 1.5 % of the light may be noise, which has to be in the bars."""
-        done = self.run_tool("verify", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front", "--storage", "rays",
+        done = self.run_tool("crosscheck", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front", "--method", "rays",
                              "--patches", 3000)
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
 
     def test_a_bar_may_be_given_instead(self):
-        done = self.run_tool("verify", "room.obj", "--patches", 300, "--bar", "5%", "--json", "out.json")
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 300, "--margin", "5%", "--json", "out.json")
         self.assertIn("with a bar of 5 % of the irradiance", done.stdout)
         facts = json.loads((self.folder / "out.json").read_text())
         self.assertIsNone(facts["relative_error"])
@@ -85,7 +85,7 @@ class VerifyTest(ToolTest):
                 self.assertGreaterEqual(bar, 0.05 * ours)
 
     def test_an_accuracy_is_reached_first(self):
-        done = self.run_tool("verify", "room.obj", "--accuracy", "3%", "--json", "out.json")
+        done = self.run_tool("crosscheck", "room.obj", "--accuracy", "3%", "--json", "out.json")
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
         self.assertIn("refining to 3 %", done.stderr)
         self.assertLessEqual(json.loads((self.folder / "out.json").read_text())["relative_error"]["total"], 0.03)
@@ -94,14 +94,14 @@ class VerifyTest(ToolTest):
         """A lamp 1 mm above the floor, that looks at it: only the gap lights the room."""
         self.write("room.obj", ROOM.replace("usemtl lamp\n", "v 0.4 0.4 0.001\nv 0.6 0.4 0.001\nv 0.6 0.6 0.001\n"
                                             "v 0.4 0.6 0.001\nusemtl lamp\nf 20 19 18 17\n"))
-        done = self.run_tool("verify", "room.obj", "--patches", 60, "--paths", 256, "--bar", "1%")
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 60, "--paths", 256, "--margin", "1%")
         self.assertIn("wrong by a factor", done.stderr)
         verdict = done.stdout.splitlines()[0]
         self.assertRegex(verdict, r"(agrees|DISAGREES|INCONCLUSIVE): .*nearer to a surface than its patches are large")
 
     def test_wide_bars_are_inconclusive(self):
         """Bars of 45 % grant a coarse mesh whatever it is off by."""
-        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "45%", "--paths", 256, "--json", "out.json")
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 50, "--margin", "45%", "--paths", 256, "--json", "out.json")
         self.assertEqual(done.returncode, DIFFERS, done.stdout)
         self.assertRegex(done.stdout, r"INCONCLUSIVE: with a bar of 45 % .*, but bars above 10 % of the light")
         facts = json.loads((self.folder / "out.json").read_text())
@@ -110,29 +110,29 @@ class VerifyTest(ToolTest):
 
     def test_too_few_patches_disagree(self):
         """Without a bar the error of a coarse mesh is many times the noise."""
-        done = self.run_tool("verify", "room.obj", "--patches", 50, "--bar", "0%", "--paths", 16384)
+        done = self.run_tool("crosscheck", "room.obj", "--patches", 50, "--margin", "0%", "--paths", 16384)
         self.assertEqual(done.returncode, DIFFERS, done.stdout)
         self.assertIn("DISAGREES", done.stdout)
 
     def test_the_same_seed_gives_the_same_words(self):
         def words(*options):
-            lines = self.run_tool("verify", "room.obj", "--patches", 100, "--paths", 256, *options).stdout.splitlines()
+            lines = self.run_tool("crosscheck", "room.obj", "--patches", 100, "--paths", 256, *options).stdout.splitlines()
             return [line for line in lines if " rays in " not in line]
         self.assertEqual(words("--threads", 1), words("--threads", 2))
         self.assertNotEqual(words(), words("--seed", 2))
 
     def test_what_does_not_converge_is_not_verified(self):
-        done = self.run_tool("verify", "room.obj", "--set", "white.reflectance=1", "--set", "lamp.reflectance=1",
+        done = self.run_tool("crosscheck", "room.obj", "--set", "white.reflectance=1", "--set", "lamp.reflectance=1",
                              "--patches", 100)
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stdout)
         self.assertIn("not verified", done.stderr)
 
     def test_refusals(self):
-        for words, code in ((["room.obj", "--bar", "a"], USAGE), (["room.obj", "--bar", "-1"], USAGE),
+        for words, code in ((["room.obj", "--margin", "a"], USAGE), (["room.obj", "--margin", "-1"], USAGE),
                             (["room.obj", "--estimator", "area"], USAGE),
                             (["room.obj", "--paths", "0"], USAGE), (["room.obj", "--json", "a.txt"], USAGE),
                             ([], USAGE), (["missing.obj"], INPUT), (["room.obj", "--json", "missing/a.json"], OUTPUT)):
-            done = self.run_tool("verify", *words)
+            done = self.run_tool("crosscheck", *words)
             self.assertEqual((done.returncode, done.stdout), (code, ""), words)
 
 

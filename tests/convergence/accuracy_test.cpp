@@ -45,7 +45,7 @@ FinerReference finer_reference(const Scene& scene, bool contact_lines = true) {
 class AskedAccuracy : public testing::TestWithParam<const char*> {};
 
 // 3 % in a room without shadow edges, in one with a contact shadow and in one with many reflections. The reference's
-// own error, by docs/accuracy.md at most 0.7 % at 4,800 patches, is far below.
+// own error, by docs/benchmarks/accuracy.md at most 0.7 % at 4,800 patches, is far below.
 TEST_P(AskedAccuracy, IsReached) {
   const Scene scene = varied_room(GetParam());
   const Simulation simulation = simulate(scene, asked(0.03));

@@ -96,8 +96,8 @@ TEST(Orders, PatchMeansConvergeFasterThanTheConstantField) {
 }
 
 // Where lit walls meet the light has no derivatives: even patches lose half an order and more, graded ones none
-// (docs/theory.md section 13): 1.26 of 2 at reflectance .5. The reference is twice as fine as the finer mesh, which
-// adds about the same to both.
+// (docs/theory/edges-and-contacts.md): 1.26 of 2 at reflectance .5. The reference is twice as fine as the finer mesh,
+// which adds about the same to both.
 TEST(Orders, GradedEdgesRestoreTheOrderWhereLitWallsMeet) {
   const double graded = order_in_cube(true);
   EXPECT_GE(graded, 1.8);

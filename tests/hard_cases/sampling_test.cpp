@@ -52,7 +52,8 @@ Moments moments(const std::function<double(std::uint64_t)>& estimate) {
   return {mean, (squares - replicates * mean * mean) / (replicates - 1)};
 }
 
-// The control variate of the theory, section 5, by plain loops: the exact value less the mean of what is blocked.
+// The control variate of docs/theory/occluded-form-factors.md, by plain loops: the exact value less the mean of what is
+// blocked.
 double reference_estimate(const PatchMesh& mesh, const Occluder& occluder, double exact, std::uint32_t rays,
                           std::uint32_t seed) {
   double blocked_weight = 0;

@@ -41,7 +41,8 @@ Simulation solved(const Scene& scene, double metres_per_unit) {
   return simulate(scene, request);
 }
 
-// The light of the room is that of the room alone: both have a form factor error of 1e-3 (docs/benchmarks/form-factors.md), twice.
+// The light of the room is that of the room alone: both have a form factor error of 1e-3
+// (docs/benchmarks/form-factors.md), twice.
 TEST(StrayTriangle, LeavesTheRoomAsItIs) {
   const Scene alone = repair(room_with_table());
   const Simulation expected = solved(alone, 1);

@@ -22,8 +22,8 @@ using namespace test;
 // The solver's relative error is 1e-6; two solutions may be twice that apart, in the norm of the reflected light.
 constexpr double solver_error = 2e-6;
 
-// What closed forms and quadrature promise of a pair without shadow rays (docs/benchmarks/form-factors.md) is 1e-3; a tenth more
-// for sampled pairs, whose errors are of both signs and average out over a row.
+// What closed forms and quadrature promise of a pair without shadow rays (docs/benchmarks/form-factors.md) is 1e-3; a
+// tenth more for sampled pairs, whose errors are of both signs and average out over a row.
 constexpr double form_factor_error = 1.1e-3;
 
 // By so much an effect that matters has to differ for its test to be able to fail.

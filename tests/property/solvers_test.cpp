@@ -180,8 +180,8 @@ TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
   EXPECT_LT(share, 0.65);
 }
 
-// docs/theory.md section 7: from one factor to the next on this grid the number of iterations changes by up to a third;
-// the estimate, which lies between two of them, needs no more than one iteration above the best.
+// docs/theory/solvers-and-bounds.md: from one factor to the next on this grid the number of iterations changes by up to
+// a third; the estimate, which lies between two of them, needs no more than one iteration above the best.
 TEST(SuccessiveOverRelaxation, EstimatesABestFactor) {
   Assembled room = assembled(test_room(0.8), test_room_edge);
   for (const double reflectance : {0.5, 0.8, 0.95}) {

@@ -40,7 +40,7 @@ class ModuleTest(unittest.TestCase):
     def test_has_the_bits_of_the_tool(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            subprocess.run([TOOL, "solve", BOX, "--patches", "400", "--no-error-bars", "-q", "-o", folder / "tool.ply", "--report", folder / "tool.json"], check=True)
+            subprocess.run([TOOL, "solve", BOX, "--patches", "400", "--no-error-bars", "-q", "-o", folder / "tool.ply", "--json", folder / "tool.json"], check=True)
             self.solved.write(str(folder / "module.ply"))
             written, own = ((folder / f"{who}.ply").read_bytes().partition(b"end_header\n")[2] for who in ("tool", "module"))
             self.assertEqual(written, own)

@@ -63,9 +63,9 @@ struct GatheredIrradiance {
 ///
 /// On each patch the radiosity is a plane, its slopes fitted to the means of the patches around: above a patch that is
 /// bright in its middle less is read off its dark corners. What a plane does not explain is an error, by as much as the
-/// sensor sees the patch unevenly, docs/theory.md section 10. Such errors of patches add up in squares. Of polygon
-/// sides with four patches or fewer, which symmetry may make alike, all that they reflect is one where `display` is not
-/// known.
+/// sensor sees the patch unevenly, docs/theory/irradiance-at-a-point.md. Such errors of patches add up in squares. Of
+/// polygon sides with four patches or fewer, which symmetry may make alike, all that they reflect is one where
+/// `display` is not known.
 ///
 /// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
 /// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the mesh errors

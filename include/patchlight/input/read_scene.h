@@ -95,7 +95,7 @@ std::vector<std::string> readable_formats();
 /// Reads a model or a scene file (.toml, which names models, sensors and more); the format follows from the extension,
 /// and "-" stands for the standard input, which is OBJ unless options.format says otherwise. Lengths are converted to
 /// metres, emitted radiance L to exitance = pi L. What is read but not simulated is named in Scene::notes.
-/// docs/formats.md has the details.
+/// docs/reference/formats/index.md has the details.
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 

@@ -10,7 +10,7 @@
 
 namespace patchlight {
 
-/// docs/solvers.md has a paragraph on each.
+/// docs/theory/solvers-and-bounds.md has a paragraph on each.
 enum class Solver {
   jacobi,
   gauss_seidel,
@@ -77,12 +77,13 @@ inline double tolerance_of(const SolverOptions& options) { return options.relati
 
 /// Solves B = E + R F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
 /// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times
-/// the largest row sum of F, of docs/theory.md section 7; where kappa is not below 1, by the bound of every patch of
-/// the same section; where that is not known either, by the relative residual, with an infinite error_bound in the
-/// history. What cannot converge ends after max_iterations with converged = false and its history; a singular system at
-/// once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled; InputError, before
-/// any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it is not reciprocal:
-/// then there is no kappa, and the bound is that of every patch; or takes_diagonal() and there are sheets.
+/// the largest row sum of F, of docs/theory/solvers-and-bounds.md; where kappa is not below 1, by the bound of every
+/// patch of the same section; where that is not known either, by the relative residual, with an infinite error_bound in
+/// the history. What cannot converge ends after max_iterations with converged = false and its history; a singular
+/// system at once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled;
+/// InputError, before any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it
+/// is not reciprocal: then there is no kappa, and the bound is that of every patch; or takes_diagonal() and there are
+/// sheets.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

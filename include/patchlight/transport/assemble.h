@@ -28,7 +28,7 @@ const char* name_of(Estimator estimator);
 
 /// How the exchange areas of all pairs of patches are kept.
 enum class Storage {
-  automatic,  ///< tiles, or rays where make_plan() prefers them, docs/theory.md section 12
+  automatic,  ///< tiles, or rays where make_plan() prefers them, docs/concepts/pairs-and-rays.md
   tiles,      ///< each pair once, as floats: time and memory in proportion to the square of the patches
   rays,  ///< not as pairs: sparse rows of the patches that some rays from each meet. Time and memory in proportion to
          ///< the patches, and an error that more rays make smaller
@@ -41,8 +41,8 @@ const char* name_of(Storage storage);
 /// True when the entries of all pairs are kept, so that they can be closed, summed up and written.
 constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles || storage == Storage::automatic; }
 
-/// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs; docs/theory.md
-/// section 5.
+/// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs;
+/// docs/theory/occluded-form-factors.md.
 struct ShortCuts {
   bool hidden = true;  ///< clusters that one polygon hides from each other take no rays
   bool free = true;    ///< clusters with nothing between them take no rays

@@ -310,5 +310,6 @@ async function main() {
 // web-ifc and the module loader write to the console, which is for our lines alone.
 for (const level of ['log', 'info', 'warn', 'error', 'debug']) console[level] = () => {};
 main().catch((error) => {
-  write({ refusal: `cannot be read: ${String(error?.message ?? error)}` });
+  // What WebAssembly throws has no message.
+  write({ refusal: `cannot be read: ${error?.message ?? 'the IFC library ends with an error, or needs more than its memory'}` });
 });

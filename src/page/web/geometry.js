@@ -1,44 +1,61 @@
-// Faces of one opacity together, opaque ones first: {opacity, faces}.
-function byOpacity(faces, opacityOf) {
-  const groups = new Map([[1, []]]);
+// Faces of one opacity and layer together, opaque ones first: {opacity, layer, faces}.
+function grouped(faces, opacityOf, layerOf) {
+  const groups = new Map();
   faces.row.forEach((row, face) => {
-    const opacity = opacityOf(row);
-    if (!groups.has(opacity)) groups.set(opacity, []);
-    groups.get(opacity).push(face);
+    const opacity = opacityOf(row), layer = layerOf(row), key = `${1 - opacity} ${layer}`;
+    if (!groups.has(key)) groups.set(key, {opacity, layer, faces: []});
+    groups.get(key).faces.push(face);
   });
-  return [...groups].map(([opacity, own]) => ({opacity, faces: own}));
+  return [...groups.values()].sort((a, b) => b.opacity - a.opacity || a.layer - b.layer);
+}
+
+// Per corner of a face the way in its plane that moves both edges there outward by one; no longer than two, where a
+// corner is sharp.
+function outwardOf(corners, normal) {
+  const ways = corners.map((corner, k) => new THREE.Vector3().subVectors(corners[(k + 1) % corners.length], corner).cross(normal).normalize());
+  return ways.map((way, k) => {
+    const before = ways[(k + ways.length - 1) % ways.length];
+    return new THREE.Vector3().addVectors(way, before).divideScalar(Math.max(1 + way.dot(before), 0.5)).clampLength(0, 2);
+  });
 }
 
 // The faces of the page as triangles, three corners each, around the middle of their bounds. `groups` says which
-// triangles have which opacity.
-function triangles(faces, opacityOf) {
+// triangles have which opacity and layer. A face with others over it is sunk by the rounding of positions, layer by
+// layer. Opaque faces have a way `outward` for each corner, in units of 1/63.5: the shader lets neighbours overlap.
+function triangles(faces, opacityOf, layerOf) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
-  const at = (vertex, axis) => low[axis] - middle[axis] + faces.positions[3 * vertex + axis] / 65535 * (high[axis] - low[axis]);
+  const step = Math.max(...low.map((value, axis) => high[axis] - value)) / 65535;
+  const at = (vertex) => new THREE.Vector3(...[0, 1, 2].map((axis) => low[axis] - middle[axis] + faces.positions[3 * vertex + axis] / 65535 * (high[axis] - low[axis])));
   const count = faces.row.length;
   let triangleCount = 0;
   for (let face = 0; face < count; ++face) triangleCount += faces.corners[4 * face + 2] === faces.corners[4 * face + 3] ? 1 : 2;
-  const positions = new Float32Array(9 * triangleCount);
+  const positions = new Float32Array(9 * triangleCount), outward = new Int8Array(9 * triangleCount);
   const vertices = new Uint32Array(3 * triangleCount);
   const faceOf = new Uint32Array(triangleCount);
   let next = 0;
-  const add = (face, corners) => {
-    corners.forEach((vertex, corner) => {
-      vertices[3 * next + corner] = vertex;
-      for (let axis = 0; axis < 3; ++axis) positions[9 * next + 3 * corner + axis] = at(vertex, axis);
+  const add = (face, corners, places, ways) => {
+    corners.forEach((corner, k) => {
+      vertices[3 * next + k] = faces.corners[4 * face + corner];
+      positions.set(places[corner].toArray(), 9 * next + 3 * k);
+      if (ways) outward.set(ways[corner].toArray().map((part) => Math.round(63.5 * part)), 9 * next + 3 * k);
     });
     faceOf[next++] = face;
   };
-  const groups = byOpacity(faces, opacityOf).map(({opacity, faces: own}) => {
+  const groups = grouped(faces, opacityOf, layerOf).map(({opacity, layer, faces: own}) => {
     const first = next;
     for (const face of own) {
       const [a, b, c, d] = faces.corners.subarray(4 * face, 4 * face + 4);
-      add(face, [a, b, c]);
-      if (c !== d) add(face, [a, c, d]);
+      const places = (c === d ? [a, b, c] : [a, b, c, d]).map(at);
+      const normal = new THREE.Vector3().subVectors(places[2], places[0]).cross(new THREE.Vector3().subVectors(places[places.length - 1], places[1])).normalize();
+      const ways = opacity === 1 ? outwardOf(places, normal) : null;
+      for (const place of places) place.addScaledVector(normal, -2 * step * layer);
+      add(face, [0, 1, 2], places, ways);
+      if (c !== d) add(face, [0, 2, 3], places, ways);
     }
-    return {opacity, first, count: next - first};
+    return {opacity, layer, first, count: next - first};
   });
-  return {positions, vertices, faceOf, groups, middle, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
+  return {positions, outward, vertices, faceOf, groups, middle, step, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
 }
 
 // The lines around faces, two ends each.
@@ -55,10 +72,16 @@ function outlines(faces, mesh, chosen) {
   return new Float32Array(ends);
 }
 
+// Where no light is a surface is grey: it is not looked at but where the model is cut.
+const unlit = [150, 150, 146];
+
 // Colours of the corners of all triangles, a byte per channel.
-function naturalColours(ofVertices, mesh) {
+function naturalColours(faces, mesh, ofVertices, dark) {
   const colours = new Uint8Array(3 * mesh.vertices.length);
-  mesh.vertices.forEach((vertex, k) => colours.set(ofVertices.subarray(3 * vertex, 3 * vertex + 3), 3 * k));
+  mesh.vertices.forEach((vertex, k) => {
+    const isDark = dark[faces.row[mesh.faceOf[Math.floor(k / 3)]]] === 1;
+    colours.set(isDark ? unlit : ofVertices.subarray(3 * vertex, 3 * vertex + 3), 3 * k);
+  });
   return colours;
 }
 
@@ -75,8 +98,8 @@ function dome(directions, inARing) {
   return corners;
 }
 
-function falseColours(faces, mesh, values, scale) {
-  const ofRow = Array.from(values, (value) => falseColour(shareOf(value, scale)));
+function falseColours(faces, mesh, values, scale, dark) {
+  const ofRow = Array.from(values, (value, row) => dark[row] === 1 ? unlit : falseColour(shareOf(value, scale)));
   const colours = new Uint8Array(3 * mesh.vertices.length);
   mesh.faceOf.forEach((face, triangle) => {
     for (let corner = 0; corner < 3; ++corner) colours.set(ofRow[faces.row[face]], 9 * triangle + 3 * corner);

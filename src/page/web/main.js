@@ -107,8 +107,8 @@ function listenToColours(model, view) {
     const name = byId("quantity").value;
     const look = model.looks[looks.findIndex(([value]) => value === name)];
     byId("legend").hidden = look !== undefined;
-    if (look) return view.colour(naturalColours(look.colours, view.mesh), true, look.sky);
-    view.colour(falseColours(model.faces, view.mesh, model.values[name], scale), false);
+    if (look) return view.colour(naturalColours(model.faces, view.mesh, look.colours, model.rows.dark), true, look.sky);
+    view.colour(falseColours(model.faces, view.mesh, model.values[name], scale, model.rows.dark), false);
     byId("ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", {}, shown(valueAt(share, scale), 3))));
     byId("extremes").textContent = extremes(model, order, scale, units[name]);
   };

@@ -1,11 +1,40 @@
+// So far, in pixels, faces reach over their edges: the rounding of a corner that lies on a neighbour's edge leaves gaps
+// of less.
+const overlap = 0.4;
+
+// Faces that overlap their neighbours, by the rounding of positions and a part of a pixel. `reach` holds both.
+function withOverlap(material, reach) {
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.reach = reach;
+    shader.vertexShader = "attribute vec3 outward;\nuniform vec2 reach;\n" + shader.vertexShader.replace("#include <begin_vertex>",
+      "#include <begin_vertex>\ntransformed += 2.0 * outward * (reach.x + reach.y * max(0.0, -(modelViewMatrix * vec4(position, 1.0)).z));");
+  };
+  return material;
+}
+
 // A material for each group of faces, all opaque or as their opacity says: a pane adds what it reflects to what is seen
-// through it.
-function surfaceMaterials(groups) {
-  const plain = {vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};
-  const opaque = new THREE.MeshBasicMaterial(plain);
-  const clear = (opacity) => new THREE.MeshBasicMaterial({...plain, transparent: true, opacity, depthWrite: false, blending: THREE.CustomBlending,
+// through it. Faces under others are drawn farther away, behind lines all are.
+function surfaceMaterials(groups, reach) {
+  const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1 + layer, polygonOffsetUnits: 1 + 4 * layer});
+  const opaque = ({layer}) => withOverlap(new THREE.MeshBasicMaterial(plain(layer)), reach);
+  const clear = ({layer, opacity}) => new THREE.MeshBasicMaterial({...plain(layer), transparent: true, opacity, depthWrite: false, blending: THREE.CustomBlending,
     blendSrc: THREE.OneFactor, blendDst: THREE.OneMinusSrcAlphaFactor});
-  return {opaque: groups.map(() => opaque), seeThrough: groups.map(({opacity}) => opacity < 1 ? clear(opacity) : opaque)};
+  const all = groups.map(opaque);
+  return {opaque: all, seeThrough: groups.map((group, k) => group.opacity < 1 ? clear(group) : all[k])};
+}
+
+// Closed solids that are cut: their faces from inside, in one colour, look like the plane of the cut.
+function fillOf(mesh, faces, filled) {
+  const places = [];
+  mesh.faceOf.forEach((face, triangle) => {
+    if (filled[faces.row[face]] === 1) places.push(...mesh.positions.subarray(9 * triangle, 9 * triangle + 9));
+  });
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
+  const colour = new THREE.Color(...unlit.map((part) => part / 255));
+  const fill = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: colour, side: THREE.BackSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8}));
+  fill.visible = false;
+  return fill;
 }
 
 // Sky and ground around the eye, behind all else.
@@ -23,23 +52,25 @@ function skyDome({directions, inARing}) {
 // The model on its canvas. Coordinates inside are metres from the middle of its bounds. Throws where there is no WebGL.
 function modelView(canvas, model) {
   const {faces, up} = model;
-  const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]]);
+  const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]], (row) => model.rows.layer[row]);
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
   renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--stage").trim());
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(mesh.positions, 3));
   geometry.setAttribute("color", new THREE.BufferAttribute(new Uint8Array(mesh.positions.length), 3, true));
+  geometry.setAttribute("outward", new THREE.BufferAttribute(mesh.outward, 3, true));
   // A side without patches is not drawn: rooms are looked into from outside.
-  const {opaque, seeThrough} = surfaceMaterials(mesh.groups);
+  const reach = {value: new THREE.Vector2()};
+  const {opaque, seeThrough} = surfaceMaterials(mesh.groups, reach);
   mesh.groups.forEach(({first, count}, k) => geometry.addGroup(3 * first, 3 * count, k));
   const solid = new THREE.Mesh(geometry, opaque);
   const scene = new THREE.Scene();
   scene.add(solid);
+  const fill = fillOf(mesh, faces, model.rows.filled);
+  scene.add(fill);
+  const bounds = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
   const sky = model.sky ? skyDome(model.sky) : null;
-  if (sky) {
-    sky.scale.setScalar(mesh.size);
-    scene.add(sky);
-  }
+  if (sky) scene.add(sky);
   const camera = new THREE.PerspectiveCamera(50, 4 / 3, mesh.size / 2000, mesh.size * 20);
   camera.up.set(...up);
   const controls = new THREE.OrbitControls(camera, canvas);
@@ -53,7 +84,12 @@ function modelView(canvas, model) {
     waiting = true;
     requestAnimationFrame(() => {
       waiting = false;
+      // The nearest that may be seen: the farther that is, the better depths are told apart.
+      camera.near = Math.max(mesh.size / 2000, 0.9 * bounds.distanceToPoint(camera.position) * Math.cos(0.5 * camera.fov * Math.PI / 180) * 0.5);
+      camera.updateProjectionMatrix();
+      reach.value.set(mesh.step, overlap * 2 * Math.tan(0.5 * camera.fov * Math.PI / 180) / Math.max(1, canvas.height));
       if (sky) sky.position.copy(camera.position);
+      if (sky) sky.scale.setScalar(4 * camera.near);
       renderer.render(scene, camera);
     });
   };
@@ -93,6 +129,7 @@ function modelView(canvas, model) {
     const normal = new THREE.Vector3().setComponent(axis === null ? 0 : axis, sign);
     view.cut = axis === null ? null : new THREE.Plane(normal, -sign * (at - mesh.middle[axis]));
     renderer.clippingPlanes = view.cut ? [view.cut] : [];
+    fill.visible = view.cut !== null;
     if (sky) sky.visible = sky.userData.wanted && view.cut === null;
     view.draw();
   };

@@ -22,11 +22,11 @@ def words_of(command, models, options):
 
 
 # Options whose one value has commas in it.
-TRIPLES = {"skip", "force", "up", "size"}
+TRIPLES = {"up", "size"}
 
 
 # Options that say how a model is read and lit: read() takes them.
-OF_READING = {"format", "unit", "confine", "up", "set", "only", "leave_out", "detail", "keep_faces", "maintenance_factor", "bands",
+OF_READING = {"format", "unit", "confine", "up", "set", "only", "exclude", "leave_out", "simplify", "detail", "no_merge", "keep_faces", "maintenance_factor", "bands",
               "color_error", "sky", "sun", "ground", "weather", "points"}
 
 
@@ -34,8 +34,8 @@ OF_READING = {"format", "unit", "confine", "up", "set", "only", "leave_out", "de
 OF_WRITING = {
     **dict.fromkeys(("o", "output", "ambient_occlusion"), "solved.write(FILE)"),
     "html": "solved.write_page(FILE)",
-    "report": "solved.report()",
-    **dict.fromkeys(("picture", "camera", "projection", "view", "size", "quality", "false_color", "picture_error",
+    **dict.fromkeys(("json", "report"), "solved.report()"),
+    **dict.fromkeys(("picture", "camera", "projection", "view", "size", "picture_quality", "quality", "false_color", "picture_error",
                      "picture_samples", "picture_error_map"), "solved.picture(...)"),
     **dict.fromkeys(("points_output", "map", "map_range"), "solved.sensors()"),
     **dict.fromkeys(("series", "lightmap", "texel", "form_factors", "checkpoint", "discard", "quiet", "verbose", "q", "v"),
@@ -44,7 +44,7 @@ OF_WRITING = {
 
 # A transport has no solver until its method solve() is called, and no goal.
 OF_SOLVING = dict.fromkeys(("solver", "tolerance", "max_iterations", "relaxation", "max_rows"), "transport.solve(NAME, ...)")
-OF_GOALS = dict.fromkeys(("accuracy", "time", "interest", "keep_mesh", "error_bars", "no_error_bars"), "pl.solve(...)")
+OF_GOALS = dict.fromkeys(("accuracy", "time_limit", "time", "focus", "interest", "no_refine", "keep_mesh", "error_bars", "no_error_bars"), "pl.solve(...)")
 
 
 def refuse_unused(call, options, unused):
@@ -69,7 +69,7 @@ def command_of(models, options):
 def arguments_of(models, options):
     """The options of patchlight solve, understood or refused as there."""
     # Something has to be written there; here it is returned.
-    return _core.parse(words_of("solve", models, options) + ["--report", "unwritten.json"])
+    return _core.parse(words_of("solve", models, options) + ["--json", "unwritten.json"])
 
 
 def picture_arguments_of(options):

@@ -10,7 +10,7 @@ from patchlight.options import picture_arguments_of
 
 
 def report(self):
-    """The report as `patchlight solve --report` writes it; docs/output.md lists the keys."""
+    """The report as `patchlight solve --json` writes it; docs/reference/outputs/report-json.md lists the keys."""
     return json.loads(self.report_json())
 
 

@@ -18,7 +18,7 @@ using namespace cli;
 
 TEST(OptionNames, StandInPlaceOfFieldsAndTheirValues) {
   EXPECT_EQ(with_option_names("effects.skip=sun: found with accuracy.relative_error; give one of them"),
-            "--skip sun: found with --accuracy; give one of them");
+            "--disable sun: found with --accuracy; give one of them");
   EXPECT_EQ(with_option_names("ask for mesh.patches."), "ask for --patches.");
   EXPECT_EQ(with_option_names("(mesh.sides=auto)"), "(--sides auto)");
   for (const char* unit : {"m", "cm", "mm", "in", "ft"}) {
@@ -40,16 +40,17 @@ TEST(OptionNames, LeaveAllElseAsItIs) {
 }
 
 TEST(OptionNames, OfACommandGoBeforeTheUsualOnes) {
-  const std::array raw{OptionName{"assembly.close=false", "--raw"}};
-  EXPECT_EQ(with_option_names("assembly.close=false and mesh.sides=both", raw), "--raw and --sides both");
+  const std::array own{OptionName{"accuracy.error_bars", "the error bars of crosscheck"}};
+  EXPECT_EQ(with_option_names("accuracy.error_bars and mesh.sides=both", own),
+            "the error bars of crosscheck and --sides both");
   Request request;
   request.assembly.close = false;
-  request.effects.force = {Effect::closure};
+  request.accuracy.error_bars = true;
   try {
-    check_with_names(request, raw);
+    check_with_names(request, own);
     FAIL() << "expected a UsageError";
   } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("--raw"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("the error bars of crosscheck"), std::string::npos) << error.what();
   }
 }
 

@@ -96,20 +96,30 @@ TEST_F(Losses, LightsLinesAndSplinesOfColladaAreCounted) {
       "type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common></source><vertices "
       "id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>";
   const std::string corners = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
-  const Scene scene = read_scene(write(
-      "a.dae",
-      "<COLLADA version=\"1.4.1\"><library_lights><light id=\"bulb\"><technique_common><point><color>1 1 "
-      "1</color></point></technique_common></light></library_lights><library_geometries><geometry "
-      "id=\"g\"><mesh>" +
-          points + "<triangles count=\"1\">" + corners + "<p>0 1 2</p></triangles><lines count=\"1\">" + corners +
-          "<p>0 1</p></lines></mesh></geometry><geometry id=\"c\"><spline/></geometry><geometry "
-          "id=\"hull\"><convex_mesh/></geometry></library_geometries><library_visual_scenes><visual_scene "
-          "id=\"s\"><node name=\"plate\"><instance_geometry url=\"#g\"/></node><node name=\"lamp\"><instance_light "
-          "url=\"#bulb\"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene "
-          "url=\"#s\"/></scene></COLLADA>"));
+  const Scene scene = read_scene(
+      write("a.dae",
+            "<COLLADA version=\"1.4.1\"><library_lights><light id=\"bulb\"><technique_common><point><color>1 1 "
+            "1</color></point></technique_common></light></library_lights><library_geometries><geometry "
+            "id=\"g\"><mesh>" +
+                points + "<triangles count=\"1\">" + corners + "<p>0 1 2</p></triangles><lines count=\"1\">" + corners +
+                "<p>0 1</p></lines></mesh></geometry><geometry id=\"c\"><spline/></geometry><geometry "
+                "id=\"hull\"><convex_mesh/></geometry><geometry "
+                "id=\"unused\"><convex_mesh/></geometry></library_geometries><library_visual_scenes><visual_scene "
+                "id=\"s\"><node name=\"plate\"><instance_geometry url=\"#g\"/><instance_geometry "
+                "url=\"#c\"/><instance_geometry url=\"#hull\"/></node><node name=\"lamp\"><instance_light "
+                "url=\"#bulb\"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene "
+                "url=\"#s\"/></scene></COLLADA>"));
   EXPECT_EQ(scene.polygons.size(), 1U);
   EXPECT_EQ(number_of(scene, little), 2U) << "a line and a spline";
   EXPECT_EQ(number_of(scene, much), 2U) << "a light and a convex mesh";
+}
+
+// Both files have a sun; a scene has one.
+TEST_F(Losses, TheSunOfASecondFileIsALoss) {
+  const std::string sky = "void light sun_color\n0\n0\n3 1 1 1\nsun_color source sun\n0\n0\n4 0 0 1 0.5\n";
+  const std::string plate = "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\ngrey polygon p\n0\n0\n9 0 0 0 1 0 0 1 1 0\n";
+  const std::vector<std::filesystem::path> files = {write("a.rad", sky + plate), write("b.rad", sky + plate)};
+  EXPECT_EQ(number_of(read_scene(files), much), 1U);
 }
 
 }  // namespace
