@@ -21,9 +21,9 @@ LONGEST_SENTENCE = 35  # words; the rule is 25, and lists of names may be longer
 # name, pattern, advice. They see the text with each piece of code replaced by CODE.
 RULES = [(name, re.compile(pattern, flags), advice) for name, pattern, advice, flags in [
     ("relative", r"[,;( ]what (of|is|are|they|it|these|that|stands|lies)\b", "name the thing instead of 'what ...'", 0),
-    ("front", r"(^|[.!?] )(What|Who|Whoever|Of|By(?! default)|Into) ", "start with the subject", 0),
+    ("front", r"(^|[.!?] )(What|Who|Whoever|Of(?! these,)|By(?! default| day| reciprocity)|Into) ", "start with the subject", 0),
     ("tell", r"\b(tells?|told|says|is said)\b", "programs print, report, list, warn, estimate", 0),
-    ("as", r"(?<!same)(?<!such)(?<!well)(?<!far),? as (in|of|by|for|\d)\b", "write 'for example' or 'e.g.'", 0),
+    ("as", r"(?<!well), as (of|by)\b|(?<!well),? as \d", "write 'for example' or 'e.g.'", 0),
     ("decimal", r"(?<![\d\w.])\.\d+", "write 0.3, not .3", 0),
     ("archaic", r"\b(anew|of then|of now|mend(s|ed)?|errs?|astray|in the mean|by the clock)\b", "use a modern word", re.I),
     ("some", r"\bsome \d", "write 'about'", re.I),

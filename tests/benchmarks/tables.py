@@ -320,7 +320,7 @@ def pictures(b):
 # real-models
 
 REAL_MODELS = {
-    "duplex, IFC": "duplex-ifc/Duplex_A.ifc", "FZK house, IFC": "ifc/AC20-FZK-Haus.ifc", "open house, IFC": "ifc/IfcOpenHouse_IFC4.ifc",
+    "duplex, IFC": "duplex-ifc/Duplex_A.ifc", "open house, IFC": "ifc/IfcOpenHouse_IFC4.ifc",
     "urban house, gbXML": "gbxml-urban-house/Urban_House_MEP.xml", "room with grids, HBJSON": "honeybee-rooms/model_radiance_grid_views.hbjson",
     "patient room, HBJSON": "honeybee-rooms/model_complete_patient_room.hbjson", "kitchen, Mitsuba": "kitchen/kitchen.xml",
     "hall with a door, Mitsuba": "veach-ajar/scene.xml"}
@@ -330,7 +330,7 @@ def real_models(b):
     if not b.models:
         return ["The models are not part of this repository; `--models FOLDER` names them.\n"]
     rows = []
-    for name, file in list(REAL_MODELS.items()) if b.full else [list(REAL_MODELS.items())[4]]:
+    for name, file in list(REAL_MODELS.items()) if b.full else [list(REAL_MODELS.items())[3]]:
         scene = b.scratch / f"{pathlib.Path(file).stem}.toml"
         try:
             b.patchlight("init", b.models / file, "-o", scene)
@@ -446,7 +446,7 @@ def main():
     parser.add_argument("--programs", type=pathlib.Path, default=ROOT / "build/tests/benchmarks")
     parser.add_argument("--models", type=pathlib.Path)
     parser.add_argument("--references", type=pathlib.Path)
-    parser.add_argument("--rooms", type=int, default=24, help="of random_rooms; 100 take more than an hour")
+    parser.add_argument("--rooms", type=int, default=20, help="of random_rooms; 100 take more than an hour")
     parser.add_argument("--out", type=pathlib.Path)
     options = parser.parse_args()
     options.out = (options.out or ROOT / ("docs/benchmarks" if options.size == "full" else "build/benchmarks")).resolve()
