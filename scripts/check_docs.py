@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the commands that pages show and compares what they print; checks links, and numbers quoted from benchmarks.
+"""Runs the commands of pages and compares their output; checks links, and numbers quoted from benchmarks.
 
 usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/check_docs.py PAGE|FOLDER...   runs the blocks of these pages
        scripts/check_docs.py --links                                               checks links and quotes of all pages
@@ -7,9 +7,9 @@ usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/check_docs.py PAGE|FOLDER...
 PATCHLIGHT_PYTHON is the interpreter that pages run as python3, Debian's if it is not set: the module needs that one.
 
 Each page has a scratch folder of its own, in which meshes/ and scripts/ are visible and `patchlight` and `python3` are
-on the PATH. A block whose first line is `# file: NAME` (or `// file: NAME`) becomes this file. Of ```console blocks each
-line after `$ ` is run and the lines below are compared with its output: `...` alone stands for any lines, `...` at the
-end of a line for its rest, numbers may differ by 5 %, times and memory by anything. `[exit 2]` as the last line is the
+on the PATH. A block whose first line is `# file: NAME` (or `// file: NAME`) becomes this file. Each line after `$ ` in a
+```console block is run, and the lines below are compared with its output. `...` alone stands for any lines, `...` at the
+end of a line for its rest. Numbers may differ by 5 %, times and memory by anything. `[exit 2]` as the last line is the
 exit code; without it a command that prints no error has to end with 0. ```sh blocks run in README.md alone.
 
 A paragraph or table with `<!-- from: benchmarks/NAME.md#section -->` in it or right above it quotes this section: each
@@ -141,7 +141,7 @@ def printed_lines(text, folder):
 
 
 def run(command, asks_code, folder, environment, last_code):
-    """Runs a command; returns its exit code and what is wrong with it."""
+    """Runs a command; returns its exit code and its faults."""
     done = subprocess.run(["bash", "-c", f"(exit {last_code}); {command.text}"], cwd=folder, env=environment, check=False,
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     shown = [line for line in command.shown if line.strip()]

@@ -452,7 +452,8 @@ std::string make_page(const std::string& table, const Options& options) {
          std::to_string(options.seed) + " --markdown FILE`" + (more.empty() ? "" : ", options" + more) +
          ".\n\n"
          "The program makes rooms at random and solves each with the default settings of `patchlight solve`. "
-         "It compares 15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four near "
+         "It compares 15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four "
+         "near "
          "walls, one that faces a wall and one below the ceiling. Half of the rooms are rotated; a third is in "
          "millimeters.\n\n" +
          table +

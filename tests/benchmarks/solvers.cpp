@@ -22,7 +22,7 @@ namespace {
 
 using namespace test;
 
-// What a solver needed to get there.
+// The effort of a solver to reach an error.
 struct Effort {
   bool converged = false;
   double iterations = 0;
@@ -31,7 +31,7 @@ struct Effort {
 };
 
 Effort effort(const Assembled& room, SolverOptions options) {
-  // In the time of some 20,000 applications shooting does about 1,000.
+  // About 1,000 shots per patch take the time of 20,000 applications.
   options.max_iterations = is_shooting(options.solver) ? 1000 : 20000;
   options.largest_row_sum = 1;
   const double start = cpu_seconds();
