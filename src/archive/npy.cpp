@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/regular_file.h"
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 
 #include <algorithm>
 #include <array>

@@ -8,9 +8,9 @@
 #include "archive/npy.h"
 #include "archive/scene_file.h"
 #include "base/parallel.h"
-#include "output/whole_folder.h"
-#include "output/write_bytes.h"
-#include "output/write_mesh.h"
+#include "output/file/whole_folder.h"
+#include "output/file/write_bytes.h"
+#include "output/mesh/write_mesh.h"
 #include "plan/planned_scene.h"
 #include "transport/ray_exchange.h"
 #include "transport/rows_by_class.h"
@@ -33,7 +33,8 @@
 namespace patchlight {
 namespace {
 
-// The files of rays that are specular on their way, in a folder of rows of rays. docs/reference/outputs/form-factor-folder.md describes them.
+// The files of rays that are specular on their way, in a folder of rows of rays.
+// docs/reference/outputs/form-factor-folder.md describes them.
 
 // What stops may name.
 struct NumbersOf {

@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "archive/scene_hash.h"
-#include "output/read_vtk.h"
+#include "output/vtk/read_vtk.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 #include "scene/extent.h"

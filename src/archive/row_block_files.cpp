@@ -6,7 +6,7 @@
 #include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "files/sha256.h"
-#include "output/append_bytes.h"
+#include "output/mesh/append_bytes.h"
 #include "scene/specular_faces.h"
 
 #include <array>

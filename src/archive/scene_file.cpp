@@ -9,7 +9,7 @@
 #include "archive/lights_json.h"
 #include "files/reason.h"
 #include "files/regular_file.h"
-#include "output/write_bytes.h"
+#include "output/file/write_bytes.h"
 
 #include <algorithm>
 #include <cmath>

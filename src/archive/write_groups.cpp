@@ -1,6 +1,6 @@
 #include "archive/group_factors.h"
-#include "output/csv_cell.h"
-#include "output/write_bytes.h"
+#include "output/file/write_bytes.h"
+#include "output/report/csv_cell.h"
 #include "transport/group_exchange.h"
 
 #include <cstdint>

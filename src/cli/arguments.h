@@ -7,7 +7,7 @@
 
 #include "archive/form_factor_files.h"
 #include "cli/messages.h"
-#include "output/write_sensor_map.h"
+#include "output/plot/write_sensor_map.h"
 #include "study/compare.h"
 #include "study/study.h"
 #include "study/verify.h"

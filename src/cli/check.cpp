@@ -7,9 +7,9 @@
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/picture.h"
-#include "output/whole_file.h"
-#include "output/write_problems.h"
-#include "output/write_survey.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_survey.h"
+#include "output/vtk/write_problems.h"
 #include "plan/survey.h"
 #include "scene/sensor_grid.h"
 

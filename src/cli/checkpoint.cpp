@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 
 #include <system_error>
 #include <utility>

@@ -10,8 +10,8 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "cli/text_table.h"
-#include "output/whole_file.h"
-#include "output/write_comparison.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_comparison.h"
 #include "page/write_page.h"
 
 #include <algorithm>

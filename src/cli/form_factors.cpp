@@ -6,7 +6,7 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 
 #include <algorithm>
 #include <iomanip>

@@ -3,7 +3,7 @@
 #include "base/rounded.h"
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
-#include "output/write_lightmap.h"
+#include "output/image/write_lightmap.h"
 
 #include <system_error>
 

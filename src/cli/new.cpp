@@ -5,8 +5,8 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/new_places.h"
-#include "output/whole_file.h"
-#include "output/write_bytes.h"
+#include "output/file/whole_file.h"
+#include "output/file/write_bytes.h"
 #include "plan/survey.h"
 
 #include <iostream>

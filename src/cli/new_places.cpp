@@ -6,7 +6,7 @@
 #include "gather/sensor_places.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/toml_sensors.h"
+#include "input/toml/toml_sensors.h"
 #include "scene/dark_solids.h"
 #include "visibility/occluder.h"
 

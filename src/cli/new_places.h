@@ -2,7 +2,7 @@
 
 #include "patchlight/scene/scene.h"
 
-#include "input/new_scene_file.h"
+#include "input/toml/new_scene_file.h"
 
 #include <string>
 #include <vector>

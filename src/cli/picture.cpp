@@ -5,7 +5,7 @@
 
 #include "base/rounded.h"
 #include "cli/picture_options.h"
-#include "output/write_picture.h"
+#include "output/image/write_picture.h"
 #include "render/lens.h"
 
 #include <algorithm>

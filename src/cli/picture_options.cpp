@@ -2,7 +2,7 @@
 
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
-#include "output/write_picture.h"
+#include "output/image/write_picture.h"
 #include "scene/projection.h"
 
 #include <algorithm>

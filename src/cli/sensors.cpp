@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "input/read_points.h"
+#include "input/tables/read_points.h"
 #include "input/text.h"
 
 namespace patchlight::cli {

@@ -7,7 +7,7 @@
 #include "cli/mesh_options.h"
 #include "cli/page_option.h"
 #include "cli/parse_value.h"
-#include "output/write_points.h"
+#include "output/vtk/write_points.h"
 
 #include <algorithm>
 #include <utility>

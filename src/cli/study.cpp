@@ -8,8 +8,8 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "cli/text_table.h"
-#include "output/whole_file.h"
-#include "output/write_study.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_study.h"
 #include "page/write_page.h"
 #include "study/price.h"
 

@@ -5,8 +5,8 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/text_table.h"
-#include "output/whole_file.h"
-#include "output/write_validation.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_validation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "cli/text_table.h"
-#include "output/whole_file.h"
-#include "output/write_verification.h"
+#include "output/file/whole_file.h"
+#include "output/report/write_verification.h"
 #include "plan/close_lamps.h"
 #include "visibility/tracing.h"
 

@@ -23,7 +23,7 @@
 namespace patchlight {
 namespace {
 
-constexpr std::size_t rays = 64;
+constexpr std::size_t directions_around = 64;
 
 // A rim lies on a polygon that is no farther away than this share of the scene's extent.
 constexpr double rim_tolerance = 1e-6;
@@ -34,8 +34,8 @@ constexpr double short_of = 0.01;
 // Directions spread over the sphere: a spiral with the golden angle between one and the next.
 std::vector<Vector> directions() {
   std::vector<Vector> all;
-  for (std::size_t k = 0; k < rays; ++k) {
-    const double z = 1 - (2.0 * static_cast<double>(k) + 1) / rays;
+  for (std::size_t k = 0; k < directions_around; ++k) {
+    const double z = 1 - (2.0 * static_cast<double>(k) + 1) / directions_around;
     const double angle = std::numbers::pi * (3 - std::sqrt(5.0)) * static_cast<double>(k);
     const double radius = std::sqrt(1 - z * z);
     all.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);

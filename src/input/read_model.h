@@ -2,7 +2,7 @@
 
 #include "patchlight/scene/scene.h"
 
-#include "input/radiance_modifiers.h"
+#include "input/radiance/radiance_modifiers.h"
 
 #include <filesystem>
 #include <string>

@@ -2,9 +2,9 @@
 
 #include "patchlight/base/error.h"
 
-#include "output/write_glb.h"
-#include "output/write_ply.h"
-#include "output/write_vtk.h"
+#include "output/mesh/write_glb.h"
+#include "output/mesh/write_ply.h"
+#include "output/vtk/write_vtk.h"
 
 namespace patchlight {
 

@@ -1,7 +1,7 @@
 #include "page/sensor_maps.h"
 
-#include "output/json_array.h"
-#include "output/map_axes.h"
+#include "output/plot/map_axes.h"
+#include "output/report/json_array.h"
 #include "page/packed.h"
 
 #include <vector>

@@ -9,7 +9,7 @@
 #include "cli/picture.h"
 #include "cli/summary.h"
 #include "light/photometry.h"
-#include "output/report_json.h"
+#include "output/report/report_json.h"
 #include "page/write_page.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

@@ -5,16 +5,29 @@
 
 #include "form_factor/patch_cluster.h"
 #include "form_factor/patch_shape.h"
-#include "transport/cluster_hull.h"
 #include "transport/pair_sampler.h"
 #include "visibility/occluder.h"
+#include "visibility/shaft.h"
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace patchlight {
+
+/// What decides on the shafts of a cluster.
+struct ClusterHull {
+  Slabs slabs;
+  std::optional<HalfSpace> behind;     ///< of a planar cluster
+  std::vector<Point> corners;          ///< points whose convex hull holds all patches
+  bool is_covered = false;             ///< in part, by polygons that lie on those of its patches
+  bool is_clear = false;               ///< some patch is one of a clear polygon
+  std::vector<PolygonIndex> polygons;  ///< of the patches
+};
+
+ClusterHull hull_of(const PatchCluster& cluster, const std::vector<PatchShape>& shapes, const ShaftCuller& culler);
 
 /// Some patches of a cluster: bit k stands for its patch k.
 using LaneMask = std::uint16_t;

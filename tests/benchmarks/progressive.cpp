@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "mesh/mesher.h"
-#include "output/write_plot.h"
+#include "output/plot/write_plot.h"
 #include "pipeline/problem_of.h"
 #include "transport/closure.h"
 #include "transport/dense.h"

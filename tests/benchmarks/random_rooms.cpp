@@ -20,7 +20,7 @@
 #include "cli/arguments.h"
 #include "cli/solve_input.h"
 #include "files/sha256.h"
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 #include "pipeline/relative_errors.h"
 #include "plan/planned_scene.h"
 #include "verify/path_tracer.h"

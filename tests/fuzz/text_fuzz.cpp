@@ -6,12 +6,12 @@
 #include "archive/form_factor_files.h"
 #include "archive/npy.h"
 #include "archive/scene_file.h"
-#include "input/read_epw.h"
-#include "input/read_ies.h"
-#include "input/read_points.h"
-#include "input/read_spectrum.h"
-#include "input/scene_file.h"
-#include "output/read_vtk.h"
+#include "input/tables/read_epw.h"
+#include "input/tables/read_ies.h"
+#include "input/tables/read_points.h"
+#include "input/tables/read_spectrum.h"
+#include "input/toml/scene_file.h"
+#include "output/vtk/read_vtk.h"
 #include "scene/photometric_web.h"
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 #include "../output/temporary_folder.h"
 #include "../output/tiny_simulation.h"
 #include "archive/scene_hash.h"
-#include "output/write_vtk.h"
+#include "output/vtk/write_vtk.h"
 
 #include <fstream>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "cli/new_places.h"
 
-#include "input/toml_sensors.h"
+#include "input/toml/toml_sensors.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

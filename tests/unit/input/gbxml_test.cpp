@@ -1,6 +1,6 @@
 #include "patchlight/input/read_scene.h"
 
-#include "input/cut_openings.h"
+#include "input/building/cut_openings.h"
 #include "model_files.h"
 
 #include <map>

@@ -1,5 +1,5 @@
 // Walls with openings, read from several formats.
-#include "input/cut_openings.h"
+#include "input/building/cut_openings.h"
 #include "model_files.h"
 
 #include <algorithm>

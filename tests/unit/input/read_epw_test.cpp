@@ -1,4 +1,4 @@
-#include "input/read_epw.h"
+#include "input/tables/read_epw.h"
 
 #include "patchlight/base/error.h"
 

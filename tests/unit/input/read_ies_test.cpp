@@ -1,4 +1,4 @@
-#include "input/read_ies.h"
+#include "input/tables/read_ies.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "input/read_points.h"
+#include "input/tables/read_points.h"
 
 #include "model_files.h"
 

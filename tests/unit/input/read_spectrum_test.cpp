@@ -1,4 +1,4 @@
-#include "input/read_spectrum.h"
+#include "input/tables/read_spectrum.h"
 
 #include "light/photometry.h"
 #include "model_files.h"

@@ -1,6 +1,6 @@
 #include "patchlight/input/read_scene.h"
 
-#include "input/new_scene_file.h"
+#include "input/toml/new_scene_file.h"
 #include "model_files.h"
 #include "support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "input/read_collada.h"
+#include "input/collada/read_collada.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "output/plot_ticks.h"
+#include "output/plot/plot_ticks.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "patchlight/base/error.h"
 
-#include "output/isolines.h"
-#include "output/write_sensor_map.h"
+#include "output/plot/isolines.h"
+#include "output/plot/write_sensor_map.h"
 #include "scene/sensor_grid.h"
 #include "temporary_folder.h"
 

@@ -1,4 +1,4 @@
-#include "output/whole_file.h"
+#include "output/file/whole_file.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,8 +1,8 @@
-#include "output/whole_folder.h"
+#include "output/file/whole_folder.h"
 
 #include "patchlight/base/error.h"
 
-#include "output/write_bytes.h"
+#include "output/file/write_bytes.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>

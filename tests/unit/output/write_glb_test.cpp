@@ -1,4 +1,4 @@
-#include "output/write_glb.h"
+#include "output/mesh/write_glb.h"
 
 #include "glb_parts.h"
 #include "render/smooth.h"

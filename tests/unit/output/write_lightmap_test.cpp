@@ -1,4 +1,4 @@
-#include "output/write_lightmap.h"
+#include "output/image/write_lightmap.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/views/picture.h"

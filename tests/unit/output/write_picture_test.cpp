@@ -1,4 +1,4 @@
-#include "output/write_picture.h"
+#include "output/image/write_picture.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"

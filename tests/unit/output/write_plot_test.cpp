@@ -1,4 +1,4 @@
-#include "output/write_plot.h"
+#include "output/plot/write_plot.h"
 
 #include "patchlight/base/error.h"
 

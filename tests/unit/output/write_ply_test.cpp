@@ -1,4 +1,4 @@
-#include "output/write_ply.h"
+#include "output/mesh/write_ply.h"
 
 #include "number_at.h"
 #include "render/smooth.h"

@@ -1,4 +1,4 @@
-#include "output/write_points.h"
+#include "output/vtk/write_points.h"
 
 #include "patchlight/base/error.h"
 

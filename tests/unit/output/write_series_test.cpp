@@ -1,4 +1,4 @@
-#include "output/write_series.h"
+#include "output/vtk/write_series.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "output/write_vtk.h"
+#include "output/vtk/write_vtk.h"
 
 #include "patchlight/base/error.h"
 

@@ -1,0 +1,304 @@
+#include "input/building/read_gbxml.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/base/geometry.h"
+#include "patchlight/light/material.h"
+
+#include "base/rounded.h"
+#include "files/sha256.h"
+#include "input/building/cut_openings.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/text.h"
+#include "input/unique_names.h"
+#include "input/xml_file.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// The materials of the two sides of a surface: the front is the side from which its corners run counter-clockwise.
+struct GbxmlSides {
+  Material front;
+  std::optional<Material> back;  // where it is another one
+};
+
+// The materials of a building by the kinds of its surfaces and openings.
+class GbxmlMaterials {
+ public:
+  explicit GbxmlMaterials(const XmlFile& xml);
+
+  // Of a kind of surface, as InteriorFloor. What lies level has a top, as floors have it, and an underside, as
+  // ceilings; `normal` is that of its front.
+  GbxmlSides surface(const std::string& kind, const Vector& normal) const;
+
+  // Of an opening: a pane where its kind is a window, a skylight or a sliding door, or its windowTypeIdRef names a
+  // type that lets light through; else a door.
+  Material opening(const pugi::xml_node& opening);
+
+  // Names of windows whose type states no visible transmittance.
+  const std::vector<std::string>& assumed() const { return assumed_; }
+
+ private:
+  std::map<std::string, pugi::xml_node> window_types_;  // by id
+  std::vector<std::string> assumed_;
+};
+
+// As lighting standards assume them for rooms whose colours are not known.
+constexpr double of_walls = 0.5;
+constexpr double of_floors = 0.2;
+constexpr double of_ceilings = 0.8;
+constexpr double of_shades = 0.35;
+constexpr double of_panes = 0.7;  // transmittance
+
+Material matt(const std::string& name, double reflectance) {
+  return {name, rgb(reflectance, reflectance, reflectance), rgb(0, 0, 0)};
+}
+
+bool is_level(const std::string& kind) {
+  constexpr std::array kinds = {"Roof",    "InteriorFloor",      "ExposedFloor", "UndergroundSlab",
+                                "Ceiling", "UndergroundCeiling", "RaisedFloor",  "SlabOnGrade"};
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+bool is_glazed(const std::string& kind) {
+  return kind.find("Window") != std::string::npos || kind.find("Skylight") != std::string::npos ||
+         kind == "SlidingDoor";
+}
+
+// <Transmittance type="Visible">, in percent if it says so.
+std::optional<double> visible_transmittance(const pugi::xml_node& type) {
+  for (const pugi::xml_node& stated : type.children("Transmittance")) {
+    if (std::string_view(stated.attribute("type").value()) != "Visible") continue;
+    const std::optional<double> share = finite_number(trimmed(stated.child_value()));
+    const bool is_percent = std::string_view(stated.attribute("unit").value()) == "Percent";
+    if (share && *share >= 0) return std::min(1.0, is_percent ? *share / 100 : *share);
+  }
+  return std::nullopt;
+}
+
+GbxmlMaterials::GbxmlMaterials(const XmlFile& xml) {
+  for (const pugi::xml_node& type : xml.document.document_element().children("WindowType"))
+    window_types_.emplace(type.attribute("id").value(), type);
+}
+
+GbxmlSides GbxmlMaterials::surface(const std::string& kind, const Vector& normal) const {
+  if (!is_level(kind)) return {matt(kind, kind == "Shade" ? of_shades : of_walls), std::nullopt};
+  const Material top = matt(kind + "-top", of_floors);
+  const Material underside = matt(kind + "-underside", of_ceilings);
+  return normal.z() >= 0 ? GbxmlSides{top, underside} : GbxmlSides{underside, top};
+}
+
+Material GbxmlMaterials::opening(const pugi::xml_node& opening) {
+  const std::string kind = opening.attribute("openingType").value();
+  const auto type = window_types_.find(opening.attribute("windowTypeIdRef").value());
+  const bool has_type = type != window_types_.end();
+  const std::optional<double> stated = has_type ? visible_transmittance(type->second) : std::nullopt;
+  if (!is_glazed(kind) && !(stated && *stated > 0)) return matt(kind.empty() ? "Opening" : kind, of_walls);
+  const std::string named = has_type ? std::string(trimmed(type->second.child_value("Name"))) : std::string();
+  Material pane = matt(named.empty() ? kind : named, 0);
+  const double share = stated.value_or(of_panes);
+  pane.transmittance = rgb(share, share, share);
+  if (!stated && std::find(assumed_.begin(), assumed_.end(), pane.name) == assumed_.end())
+    assumed_.push_back(pane.name);
+  return pane;
+}
+
+// The reflectances that are taken, as a sentence.
+std::string usual_reflectances() {
+  return "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
+         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as InteriorWall.reflectance=0.7";
+}
+
+double metres_of(const std::string& unit, const std::string& where) {
+  static const std::map<std::string, double> metres = {
+      {"Kilometers", 1000}, {"Meters", 1},     {"Centimeters", 0.01}, {"Millimeters", 0.001},
+      {"Miles", 1609.344},  {"Yards", 0.9144}, {"Feet", 0.3048},      {"Inches", 0.0254}};
+  const auto found = metres.find(unit);
+  if (found != metres.end()) return found->second;
+  throw InputError(where, "lengthUnit: found '" + unit +
+                              "'; expected Kilometers, Meters, Centimeters, Millimeters, Miles, Yards, Feet or Inches");
+}
+
+class GbxmlReader {
+ public:
+  GbxmlReader(const XmlFile& xml, double metres) : xml_(xml), metres_(metres), materials_(xml) {
+    scene_.file = xml.file;
+    scene_.metres_per_unit = metres;
+    scene_.up = Vector::UnitZ();
+    scene_.up_stated = true;
+  }
+
+  Scene scene() && {
+    for (const pugi::xml_node& campus : xml_.document.document_element().children("Campus")) {
+      turned_ = finite_number(trimmed(campus.child("Location").child_value("CADModelAzimuth"))).value_or(0);
+      for (const pugi::xml_node& surface : campus.children("Surface")) add_surface(surface);
+      for (const pugi::xml_node& building : campus.children("Building")) add_rooms(building);
+    }
+    scene_.notes.push_back(usual_reflectances());
+    if (turned_ != 0)
+      scene_.notes.push_back("CADModelAzimuth " + rounded(turned_) +
+                             " is left out: north is y unless a scene file says otherwise");
+    for (std::string& note :
+         note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
+      scene_.notes.push_back(std::move(note));
+    scene_ = left_out_.on(std::move(scene_));
+    return std::move(scene_);
+  }
+
+ private:
+  Point point_of(const pugi::xml_node& node) const {
+    Point point = Point::Zero();
+    Eigen::Index k = 0;
+    for (const pugi::xml_node& coordinate : node.children("Coordinate")) {
+      const std::optional<double> value = finite_number(trimmed(coordinate.child_value()));
+      if (!value || k == 3)
+        throw InputError(place_of(xml_, coordinate), "found the coordinate '" + std::string(coordinate.child_value()) +
+                                                         "'; expected three numbers for a CartesianPoint");
+      point[k++] = metres_ * *value;
+    }
+    if (k < 3) throw InputError(place_of(xml_, node), "a CartesianPoint has fewer than three coordinates");
+    return point;
+  }
+
+  std::vector<Point> loop_of(const pugi::xml_node& loop) const {
+    std::vector<Point> points;
+    for (const pugi::xml_node& point : loop.children("CartesianPoint")) points.push_back(point_of(point));
+    return points;
+  }
+
+  std::vector<Point> outline_of(const pugi::xml_node& node) const {
+    return loop_of(node.child("PlanarGeometry").child("PolyLoop"));
+  }
+
+  static std::string name_of(const pugi::xml_node& node) {
+    const std::string_view name = trimmed(node.child_value("Name"));
+    return name.empty() ? node.attribute("id").value() : std::string(name);
+  }
+
+  void add_surface(const pugi::xml_node& surface) {
+    const std::string kind = surface.attribute("surfaceType").value();
+    const std::string name = name_of(surface);
+    const std::vector<Point> outline = outline_of(surface);
+    for (const pugi::xml_node& space : surface.children("AdjacentSpaceId"))
+      faces_of_space_[space.attribute("spaceIdRef").value()].push_back(outline);
+    std::vector<std::vector<Point>> openings;
+    for (const pugi::xml_node& opening : surface.children("Opening")) {
+      openings.push_back(outline_of(opening));
+      add_opening(opening, openings.back());
+      if (openings.back().size() < 3) openings.pop_back();
+    }
+    if (kind == "Air") return left_out_.add("surfaces of air are open, left out", name);
+    if (outline.size() < 3) return left_out_.lose("surfaces without a PolyLoop of three corners, left out", name);
+    const CutOutline cut = without_openings(outline, openings, tolerance());
+    if (cut.beyond > 0) left_out_.add("surfaces with openings that reach beyond them, cut within the surface", name);
+    if (!cut.is_cut) left_out_.add("surfaces without a clear area, whose openings are not cut", name);
+    const GbxmlSides sides = materials_.surface(kind.empty() ? "Surface" : kind, area_vector(outline));
+    if (!cut.parts.empty()) add_polygons(surface, name, cut.parts, sides);
+  }
+
+  // An opening that is air is a hole.
+  void add_opening(const pugi::xml_node& opening, const std::vector<Point>& outline) {
+    const std::string name = name_of(opening);
+    if (std::string_view(opening.attribute("openingType").value()) == "Air") return;
+    if (outline.size() < 3) return left_out_.lose("openings without a PolyLoop of three corners, left out", name);
+    add_polygons(opening, name, {outline}, {materials_.opening(opening), std::nullopt});
+  }
+
+  // What drawings are exact to, 1 mm.
+  static double tolerance() { return 1e-3; }
+
+  void add_polygons(const pugi::xml_node& node, const std::string& name, const std::vector<std::vector<Point>>& parts,
+                    const GbxmlSides& sides) {
+    Polygon polygon;
+    polygon.material = index_of(sides.front);
+    if (sides.back) polygon.back_material = index_of(*sides.back);
+    polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
+    polygon.line = line_of(xml_, node);
+    scene_.groups.push_back(name);
+    for (const std::vector<Point>& part : parts) {
+      polygon.corners.clear();
+      for (const Point& corner : part) {
+        polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
+        scene_.vertices.push_back(corner);
+      }
+      scene_.polygons.push_back(polygon);
+    }
+  }
+
+  MaterialIndex index_of(const Material& material) {
+    // Window types of one name may have different transmittances.
+    const Spectrum& transmittance = material.transmittance;
+    const auto [found, is_new] = materials_by_transmittance_.emplace(
+        std::pair(material.name, std::vector<double>(transmittance.begin(), transmittance.end())),
+        static_cast<MaterialIndex>(scene_.materials.size()));
+    if (is_new) {
+      scene_.materials.push_back(material);
+      scene_.materials.back().name = material_names_.unique(material.name);
+    }
+    return found->second;
+  }
+
+  // The faces of a space: its shell, else what is around it.
+  std::vector<std::vector<Point>> faces_of(const pugi::xml_node& space) const {
+    std::vector<std::vector<Point>> faces;
+    for (const pugi::xml_node& loop : space.child("ShellGeometry").child("ClosedShell").children("PolyLoop")) {
+      faces.push_back(loop_of(loop));
+      if (faces.back().size() < 3) faces.pop_back();
+    }
+    const auto around = faces_of_space_.find(space.attribute("id").value());
+    if (!faces.empty() || around == faces_of_space_.end()) return faces;
+    for (const std::vector<Point>& face : around->second) {
+      if (face.size() >= 3) faces.push_back(face);
+    }
+    return faces;
+  }
+
+  void add_rooms(const pugi::xml_node& building) {
+    std::map<std::string, std::string> storeys;
+    for (const pugi::xml_node& storey : building.children("BuildingStorey"))
+      storeys.emplace(storey.attribute("id").value(), name_of(storey));
+    for (const pugi::xml_node& space : building.children("Space")) {
+      const auto storey = storeys.find(space.attribute("buildingStoreyIdRef").value());
+      std::vector<std::vector<Point>> faces = faces_of(space);
+      if (faces.empty()) {
+        left_out_.lose("spaces without faces, left out", name_of(space));
+        continue;
+      }
+      scene_.rooms.push_back(
+          {room_names_.unique(name_of(space)), storey == storeys.end() ? "" : storey->second, std::move(faces)});
+    }
+  }
+
+  const XmlFile& xml_;
+  double metres_;
+  GbxmlMaterials materials_;
+  Scene scene_;
+  LeftOut left_out_;
+  std::map<std::string, std::vector<std::vector<Point>>> faces_of_space_;
+  UniqueNames room_names_;
+  UniqueNames material_names_;
+  std::map<std::pair<std::string, std::vector<double>>, MaterialIndex> materials_by_transmittance_;
+  double turned_ = 0;  // what is up in plan to true north, degrees
+};
+
+}  // namespace
+
+Scene read_gbxml(const XmlFile& xml, double factor) {
+  const pugi::xml_node root = xml.document.document_element();
+  const std::string unit = root.attribute("lengthUnit").value();
+  const double metres = factor * metres_of(unit.empty() ? "Meters" : unit, place_of(xml, root));
+  Scene scene = with_used_materials(GbxmlReader(xml, metres).scene());
+  scene.sha256 = sha256({&xml.bytes, 1});
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,369 @@
+#include "input/collada/read_collada.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
+
+#include "base/rounded.h"
+#include "files/reason.h"
+#include "files/sha256.h"
+#include "input/collada/assimp_pictures.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/picture_colours.h"
+#include "input/scene_bytes.h"
+#include "input/stated_panes.h"
+#include "input/text.h"
+#include "input/texture_maps.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/scene.h>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <pugixml.hpp>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// A pane has the mean of its picture.
+Material painted(Material material, const Spectrum& mean, const std::shared_ptr<const Texture>& texture) {
+  material.reflectance = mean;
+  if (material.stated_pane) material.stated_pane->matt_reflectance = mean;
+  if (material.texture) material.texture->texture = texture;
+  if (!texture) material.texture.reset();
+  return material;
+}
+
+// Without maps into pictures that are none or have one colour.
+Scene with_used_maps(Scene scene) {
+  std::vector<TextureMap> maps;
+  for (Polygon& polygon : scene.polygons) {
+    if (polygon.texture_map == no_texture_map) continue;
+    const TextureMap& map = scene.texture_maps[polygon.texture_map];
+    polygon.texture_map = no_texture_map;
+    if (!scene.materials[polygon.material].texture) continue;
+    polygon.texture_map = static_cast<std::uint32_t>(maps.size());
+    maps.push_back(map);
+  }
+  scene.texture_maps = std::move(maps);
+  return scene;
+}
+
+// The scene of a model file, which assimp read and which has `bytes`, with its pictures. Of a scene with pictures the
+// inputs name that of each material, empty for none; materials with one that are no panes have a texture that stands
+// in its place, and their polygons have maps. Where a picture cannot be read the material stays as it is, without
+// texture, and a note names it. Leaves materials that no polygon uses out, and fills inputs and sha256. Pictures that
+// do not lie in the folder `confine`, if there is one, are not read.
+Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::filesystem::path& confine) {
+  const std::vector<std::filesystem::path> names = std::exchange(scene.inputs, {});
+  std::set<std::filesystem::path> files(names.begin(), names.end());
+  files.erase(std::filesystem::path());
+  scene.inputs.assign(files.begin(), files.end());
+  const PictureColours colours = picture_colours(scene.inputs, confine, scene.file);
+  std::vector<std::string> panes;
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    if (names[m].empty()) continue;
+    Material& material = scene.materials[m];
+    const std::string file = names[m].string();
+    const auto mean = colours.by_file.find(file);
+    if (mean == colours.by_file.end()) {
+      material.texture.reset();
+      scene.notes.push_back("the picture " + file + " of material '" + material.name + "' " + colours.faults.at(file) +
+                            "; it is grey instead, reflectance 0.5");
+      continue;
+    }
+    const auto texture = colours.textures.find(file);
+    material =
+        painted(std::move(material), mean->second, texture == colours.textures.end() ? nullptr : texture->second);
+    if (material.stated_pane) panes.push_back(material.name);
+  }
+  for (std::string& note : note_on("textures of panes are replaced by their mean colour", panes))
+    scene.notes.push_back(std::move(note));
+  std::vector<std::string> contents = {bytes};
+  contents.insert(contents.end(), colours.digests.begin(), colours.digests.end());
+  scene.sha256 = sha256(contents);
+  return with_used_materials(with_used_maps(std::move(scene)));
+}
+
+Spectrum color(const aiMaterial& material, const char* key, double otherwise) {
+  aiColor3D found;
+  if (material.Get(key, 0, 0, found) != aiReturn_SUCCESS) return rgb(otherwise, otherwise, otherwise);
+  return rgb(found.r, found.g, found.b);
+}
+
+// Besides that of the diffuse colour.
+bool has_other_texture(const aiMaterial& material) {
+  for (int type = aiTextureType_DIFFUSE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    if (material.GetTextureCount(static_cast<aiTextureType>(type)) > 0) return true;
+  }
+  return false;
+}
+
+double number_or(const aiMaterial& material, const char* key, double otherwise) {
+  float found = 0;
+  return material.Get(key, 0, 0, found) == aiReturn_SUCCESS ? found : otherwise;
+}
+
+// What goes through: in COLLADA by the transparent colour (opaque="RGB_ZERO"), whose luminance the opacity has already.
+Spectrum let_through(const aiMaterial& material, double opacity) {
+  const Spectrum filter = color(material, "$clr.transparent", 1).max(0);
+  const double luminance = 0.212671 * filter[0] + 0.715160 * filter[1] + 0.072169 * filter[2];
+  if ((filter == filter[0]).all() || !(luminance > 0)) return Spectrum::Constant(3, 1 - opacity);
+  return (1 - opacity) / luminance * filter;
+}
+
+// A picture stands in the place of the diffuse colour, for which assimp then tells 1.
+Material with_place_for_picture(Material material, const AssimpPicture& picture) {
+  const Spectrum grey = default_material().reflectance;
+  const auto value = static_cast<float>(grey[0]);
+  material.reflectance = grey;
+  material.texture = {std::make_shared<const Texture>(Texture{1, 1, {{value, value, value}}}),
+                      primaries_times(rgb(1, 1, 1)), picture.wrap};
+  return material;
+}
+
+Material assimp_material(const aiMaterial& read, const AssimpPictures& pictures, unsigned int index) {
+  aiString name;
+  read.Get(AI_MATKEY_NAME, name);
+  // Exitance = pi radiance for a Lambertian emitter.
+  Material material{name.C_Str(), color(read, "$clr.diffuse", 0.5), std::numbers::pi * color(read, "$clr.emissive", 0)};
+  const auto picture = pictures.find(index);
+  if (picture != pictures.end()) material = with_place_for_picture(std::move(material), picture->second);
+  const double opacity = number_or(read, "$mat.opacity", 1);
+  if (!(opacity >= 0 && opacity < 1)) return material;
+  return as_pane(std::move(material), let_through(read, opacity),
+                 plausible_index(number_or(read, "$mat.refracti", usual_index)), "opacity " + rounded(opacity));
+}
+
+bool is_used(const aiScene& model, unsigned int material) {
+  for (unsigned int m = 0; m < model.mNumMeshes; ++m) {
+    if (model.mMeshes[m]->mMaterialIndex == material) return true;
+  }
+  return false;
+}
+
+// The scene with all materials of the model, and with notes on what those that meshes use have that is not simulated.
+// Those with a picture are grey and have one texel; where there are pictures the inputs name them, one for each
+// material, as with_decoded_pictures() takes them.
+Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictures& pictures) {
+  std::vector<std::string> ignored;
+  for (unsigned int m = 0; m < model.mNumMaterials; ++m) {
+    const aiMaterial& read = *model.mMaterials[m];
+    scene.materials.push_back(assimp_material(read, pictures, m));
+    if (is_used(model, m) && has_other_texture(read)) ignored.push_back(scene.materials.back().name);
+  }
+  if (!pictures.empty()) scene.inputs.resize(scene.materials.size());
+  for (const auto& [m, picture] : pictures) scene.inputs[m] = picture.file;
+  for (std::string& note : note_on("textures of other than diffuse colours are ignored", ignored))
+    scene.notes.push_back(std::move(note));
+  return scene;
+}
+
+// Leaves only the importers of one extension: assimp would try others whose signature it finds in the file.
+void keep_importer(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
+    const std::string extensions = std::string(" ") + importer.GetImporterInfo(k)->mFileExtensions + " ";
+    if (extensions.find(" " + extension + " ") == std::string::npos) {
+      importer.UnregisterLoader(importer.GetImporter(k));
+    }
+  }
+}
+
+Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
+  Eigen::Matrix4d result;
+  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return result;
+}
+
+// Collects the faces of all nodes.
+class AssimpCollector {
+ public:
+  AssimpCollector(Scene scene, const aiScene& model, const AssimpPictures& pictures)
+      : scene_(std::move(scene)), model_(model), pictures_(pictures), mapped_(scene_.file) {}
+
+  void add_node(const aiNode& node, const Eigen::Matrix4d& above, const std::string& group_above) {
+    const Eigen::Matrix4d to_scene = above * matrix(node.mTransformation);
+    const std::string name = node.mName.C_Str();
+    const std::string group = name.empty() ? group_above : name;
+    for (unsigned int k = 0; k < node.mNumMeshes; ++k) add_mesh(*model_.mMeshes[node.mMeshes[k]], to_scene, group);
+    for (unsigned int k = 0; k < node.mNumChildren; ++k) add_node(*node.mChildren[k], to_scene, group);
+  }
+
+  void add_lights_and_cameras() {
+    for (unsigned int k = 0; k < model_.mNumLights; ++k)
+      left_out_.lose("lights without a surface, which are not read from COLLADA, left out",
+                     model_.mLights[k]->mName.C_Str());
+    for (unsigned int k = 0; k < model_.mNumCameras; ++k)
+      left_out_.lose_without_area("cameras, which are not read from COLLADA, left out",
+                                  model_.mCameras[k]->mName.C_Str());
+  }
+
+  Scene scene() && {
+    scene_.texture_maps = mapped_.maps();
+    for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
+    return left_out_.on(std::move(scene_));
+  }
+
+ private:
+  void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& group) {
+    const auto [entry, is_new] = groups_.emplace(group, static_cast<std::uint32_t>(scene_.groups.size()));
+    if (is_new) scene_.groups.push_back(group);
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    for (unsigned int v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& p = mesh.mVertices[v];
+      scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
+    }
+    const std::vector<Eigen::Vector2d> places = places_of(mesh);
+    // A mirrored copy keeps its front where it was: the corners run the other way.
+    const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
+    for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices < 3) {
+        left_out_.lose_without_area("points and lines, left out", group);
+        continue;
+      }
+      Polygon polygon;
+      for (unsigned int k = 0; k < face.mNumIndices; ++k) {
+        const unsigned int corner = face.mIndices[mirrored ? face.mNumIndices - 1 - k : k];
+        if (corner >= mesh.mNumVertices) throw InputError(scene_.file, "a face names a vertex that is not there");
+        polygon.corners.push_back(first + corner);
+      }
+      polygon.material = mesh.mMaterialIndex;
+      polygon.group = entry->second;
+      if (scene_.materials[polygon.material].texture) polygon.texture_map = mapped(polygon, first, places);
+      scene_.polygons.push_back(std::move(polygon));
+    }
+  }
+
+  std::vector<Eigen::Vector2d> places_of(const aiMesh& mesh) const {
+    const auto picture = pictures_.find(mesh.mMaterialIndex);
+    return picture == pictures_.end() ? std::vector<Eigen::Vector2d>() : places_in(picture->second, mesh);
+  }
+
+  std::uint32_t mapped(const Polygon& polygon, std::uint32_t first, const std::vector<Eigen::Vector2d>& places) {
+    std::vector<Point> corners;
+    std::vector<Eigen::Vector2d> in_picture;
+    for (const std::uint32_t corner : polygon.corners) {
+      corners.push_back(scene_.vertices[corner]);
+      if (!places.empty()) in_picture.push_back(places[corner - first]);
+    }
+    return mapped_.add(corners, in_picture, 0);
+  }
+
+  Scene scene_;
+  const aiScene& model_;
+  const AssimpPictures& pictures_;
+  MappedFaces mapped_;
+  std::map<std::string, std::uint32_t> groups_;
+  LeftOut left_out_;
+};
+
+// Reads a COLLADA model with assimp: all faces, in the order of the nodes, with the nodes' transformations.
+// Coordinates pass through single precision, and axes stay as in the file. Diffuse colours become reflectances,
+// emissive colours radiances in W/(m^2 sr), an opacity below 1 makes a pane. Fills vertices (metres), polygons,
+// materials, maps into pictures, groups (names of the nodes), file, metres_per_unit, notes and the inputs, as
+// with_decoded_pictures() takes them. May crash on damaged files: call it within read_isolated(). Throws InputError
+// naming `file`.
+Scene assimp_scene(const std::string& bytes, const std::string& file, double metres_per_unit) {
+  Assimp::Importer importer;
+  keep_importer(importer, "dae");
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* model = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "dae");
+  if (model == nullptr || model->mRootNode == nullptr) {
+    throw InputError(
+        file, "is not a good dae file: " + reason_of(std::string(importer.GetErrorString())) + "; export it again");
+  }
+  Scene scene;
+  scene.file = file;
+  const AssimpPictures pictures = diffuse_pictures(*model, std::filesystem::path(file).parent_path());
+  scene = with_assimp_materials(std::move(scene), *model, pictures);
+  Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
+  to_scene.topLeftCorner<3, 3>() *= metres_per_unit;
+  AssimpCollector collector(std::move(scene), *model, pictures);
+  collector.add_node(*model->mRootNode, to_scene, "");
+  collector.add_lights_and_cameras();
+  scene = std::move(collector).scene();
+  scene.metres_per_unit = metres_per_unit;
+  return scene;
+}
+
+// The file's <up_axis>: X_UP, Y_UP (also when there is none) or Z_UP. assimp does not tell it.
+Vector up_axis(const std::string& text) {
+  constexpr std::string_view element = "<up_axis>";
+  const std::size_t found = text.find(element);
+  if (found == std::string::npos) return Vector::UnitY();
+  const std::size_t value = text.find_first_not_of(" \t\r\n", found + element.size());
+  if (value == std::string::npos) return Vector::UnitY();
+  return text[value] == 'X' ? Vector::UnitX() : text[value] == 'Z' ? Vector::UnitZ() : Vector::UnitY();
+}
+
+// The ids of geometries that a node places in the scene, as "#id". Walked without recursion, however deep nodes are
+// nested.
+std::set<std::string> placed_geometries(const pugi::xml_document& document) {
+  struct Instances : pugi::xml_tree_walker {
+    std::set<std::string> urls;
+    bool for_each(pugi::xml_node& node) override {
+      if (std::string_view(node.name()) == "instance_geometry") urls.insert(node.attribute("url").value());
+      return true;
+    }
+  } instances;
+  pugi::xml_node root = document.child("COLLADA");
+  root.traverse(instances);
+  return instances.urls;
+}
+
+// assimp skips geometries that are not meshes, and holes of polygons. Geometries that no node places are not lost.
+Scene with_lost_geometry(Scene scene, const std::string& text) {
+  LeftOut left_out;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());
+  const std::set<std::string> placed = placed_geometries(document);
+  for (const pugi::xml_node& geometry : document.child("COLLADA").child("library_geometries").children("geometry")) {
+    if (placed.count(std::string("#") + geometry.attribute("id").value()) == 0) continue;
+    const std::string name = geometry.attribute(geometry.attribute("name") ? "name" : "id").value();
+    const pugi::xml_node mesh = geometry.child("mesh");
+    if (geometry.child("spline"))
+      left_out.lose_without_area("splines, left out", name);
+    else if (!mesh)
+      left_out.lose("geometries that are not meshes, left out", name);
+    for (const pugi::xml_node& polygons : mesh.children("polygons")) {
+      for ([[maybe_unused]] const pugi::xml_node& face : polygons.children("ph"))
+        left_out.lose("polygons with holes, left out; of the geometries", name);
+    }
+  }
+  return left_out.on(std::move(scene));
+}
+
+}  // namespace
+
+Scene read_collada(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
+  const std::string bytes = read_text(file, file.string(), "the model file");
+  Scene scene = read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), metres_per_unit); });
+  // These are decoded in a process of their own: one on which that crashes leaves the model as it is.
+  scene = with_decoded_pictures(std::move(scene), bytes, confine);
+  scene = with_lost_geometry(std::move(scene), bytes);
+  scene.up = up_axis(bytes);
+  scene.up_stated = true;
+  return scene;
+}
+
+double collada_unit(std::string_view text) {
+  const std::size_t unit = text.find("<unit");
+  if (unit == std::string_view::npos) return 1;
+  const std::string_view element = text.substr(unit, text.find('>', unit) - unit);
+  const std::size_t key = element.find("meter=");
+  if (key == std::string_view::npos || key + 7 >= element.size()) return 1;
+  const std::size_t begin = key + 7;
+  const std::size_t end = element.find_first_of("\"'", begin);
+  const double metres = finite_number(element.substr(begin, end - begin)).value_or(1);
+  return metres > 0 ? metres : 1;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,324 @@
+#include "input/mesh/read_ply.h"
+
+#include "patchlight/base/error.h"
+
+#include "files/sha256.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
+
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool is_list = false;
+  PlyType count_type = PlyType::uint8;  // of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+// What a PLY file says about itself.
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t bytes = 0;  // where the values begin
+  std::uint32_t lines = 0;
+};
+
+// Hands out the values of a PLY file one after the other.
+class PlyBody {
+ public:
+  PlyBody(std::string_view bytes, const PlyHeader& header, std::string file);
+
+  // The next number, of this type. \throws InputError when there is none.
+  double next(PlyType type);
+  // All numbers of the next property: one, or a list. \throws InputError when they are missing.
+  std::vector<double> next(const PlyProperty& property);
+  // "room.ply:12", or "room.ply" where values are binary.
+  std::string place() const;
+  // The line in an ASCII file; 0 otherwise.
+  std::uint32_t line() const { return encoding_ == PlyEncoding::ascii ? line_ : 0; }
+
+ private:
+  double next_word();
+  double next_bytes(PlyType type);
+
+  std::string_view rest_;
+  PlyEncoding encoding_;
+  std::uint32_t line_;
+  std::string file_;
+};
+
+PlyType type_named(std::string_view name, const std::string& where) {
+  static const std::map<std::string_view, PlyType> types = {
+      {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
+      {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
+      {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
+      {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
+      {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
+      {"float64", PlyType::float64}};
+  const auto found = types.find(name);
+  if (found == types.end())
+    throw InputError(where, "found the type '" + std::string(name) + "'; expected one of PLY's");
+  return found->second;
+}
+
+PlyEncoding encoding_named(const std::vector<std::string_view>& statement, const std::string& where) {
+  const std::string_view name = statement.size() > 1 ? statement[1] : std::string_view();
+  if (name == "ascii") return PlyEncoding::ascii;
+  if (name == "binary_little_endian") return PlyEncoding::little_endian;
+  if (name == "binary_big_endian") return PlyEncoding::big_endian;
+  throw InputError(
+      where, "found the format '" + std::string(name) + "'; expected ascii, binary_little_endian or binary_big_endian");
+}
+
+PlyElement element_of(const std::vector<std::string_view>& statement, const std::string& where) {
+  PlyElement element;
+  const std::string_view count = statement.size() == 3 ? statement[2] : std::string_view();
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
+  if (count.empty() || error != std::errc() || end != count.data() + count.size()) {
+    throw InputError(where, "expected: element NAME COUNT");
+  }
+  element.name = statement[1];
+  return element;
+}
+
+PlyProperty property_of(const std::vector<std::string_view>& statement, const std::string& where) {
+  PlyProperty property;
+  property.is_list = statement.size() > 1 && statement[1] == "list";
+  if (statement.size() != (property.is_list ? 5U : 3U)) {
+    throw InputError(where, "expected: property TYPE NAME, or property list TYPE TYPE NAME");
+  }
+  if (property.is_list) property.count_type = type_named(statement[2], where);
+  property.type = type_named(statement[statement.size() - 2], where);
+  property.name = statement.back();
+  return property;
+}
+
+// The line that begins at `begin`, without its end; `begin` moves behind it.
+std::string_view line_at(std::string_view bytes, std::size_t& begin) {
+  const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+  std::string_view line = bytes.substr(begin, end - begin);
+  begin = std::min(end + 1, bytes.size());
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+std::size_t size_of(PlyType type) {
+  constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+
+template <typename Value>
+double value_of(const std::array<char, 8>& bytes) {
+  Value value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return static_cast<double>(value);
+}
+
+// Throws InputError naming the line.
+PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
+  PlyHeader header;
+  if (trimmed(line_at(bytes, header.bytes)) != "ply") {
+    throw InputError(file, "is not a PLY file: expected the word ply at its beginning");
+  }
+  header.lines = 1;
+  while (header.bytes < bytes.size()) {
+    const std::vector<std::string_view> statement = words(line_at(bytes, header.bytes));
+    const std::string where = file + ":" + std::to_string(++header.lines);
+    if (statement.empty() || statement[0] == "comment" || statement[0] == "obj_info") continue;
+    if (statement[0] == "end_header") return header;
+    if (statement[0] == "format") {
+      header.encoding = encoding_named(statement, where);
+    } else if (statement[0] == "element") {
+      header.elements.push_back(element_of(statement, where));
+    } else if (statement[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(property_of(statement, where));
+    } else {
+      throw InputError(where, "found '" + std::string(statement[0]) + "'; expected element, property or end_header");
+    }
+  }
+  throw InputError(file, "ends within its header; expected end_header");
+}
+
+PlyBody::PlyBody(std::string_view bytes, const PlyHeader& header, std::string file)
+    : rest_(bytes.substr(header.bytes)), encoding_(header.encoding), line_(header.lines + 1), file_(std::move(file)) {}
+
+std::string PlyBody::place() const { return line() > 0 ? file_ + ":" + std::to_string(line()) : file_; }
+
+double PlyBody::next(PlyType type) { return encoding_ == PlyEncoding::ascii ? next_word() : next_bytes(type); }
+
+std::vector<double> PlyBody::next(const PlyProperty& property) {
+  if (!property.is_list) return {next(property.type)};
+  const double count = next(property.count_type);
+  std::vector<double> values;
+  while (static_cast<double>(values.size()) < count) values.push_back(next(property.type));
+  return values;
+}
+
+double PlyBody::next_word() {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t begin = std::min(rest_.find_first_not_of(blanks), rest_.size());
+  line_ +=
+      static_cast<std::uint32_t>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
+  rest_.remove_prefix(begin);
+  const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
+  rest_.remove_prefix(word.size());
+  if (word.empty()) throw InputError(file_, "ends before all elements that its header promises");
+  const std::optional<double> value = finite_number(word);
+  if (!value) throw InputError(place(), "found '" + std::string(word) + "'; expected a finite number");
+  return *value;
+}
+
+double PlyBody::next_bytes(PlyType type) {
+  const std::size_t size = size_of(type);
+  if (rest_.size() < size) throw InputError(file_, "ends before all elements that its header promises");
+  std::array<char, 8> bytes{};
+  std::copy_n(rest_.begin(), size, bytes.begin());
+  if (encoding_ == PlyEncoding::big_endian)
+    std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  rest_.remove_prefix(size);
+  switch (type) {
+    case PlyType::int8:
+      return value_of<std::int8_t>(bytes);
+    case PlyType::uint8:
+      return value_of<std::uint8_t>(bytes);
+    case PlyType::int16:
+      return value_of<std::int16_t>(bytes);
+    case PlyType::uint16:
+      return value_of<std::uint16_t>(bytes);
+    case PlyType::int32:
+      return value_of<std::int32_t>(bytes);
+    case PlyType::uint32:
+      return value_of<std::uint32_t>(bytes);
+    case PlyType::float32:
+      return value_of<float>(bytes);
+    case PlyType::float64:
+      return value_of<double>(bytes);
+  }
+  return 0;
+}
+
+// Where a property stands in its element; nothing when there is none of these names.
+std::optional<std::size_t> find(const PlyElement& element, std::initializer_list<std::string_view> names) {
+  for (std::size_t k = 0; k < element.properties.size(); ++k) {
+    if (std::find(names.begin(), names.end(), element.properties[k].name) != names.end()) return k;
+  }
+  return std::nullopt;
+}
+
+Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
+  const std::optional<std::size_t> x = find(element, {"x"});
+  const std::optional<std::size_t> y = find(element, {"y"});
+  const std::optional<std::size_t> z = find(element, {"z"});
+  if (!x || !y || !z) throw InputError(scene.file, "its vertices lack one of the properties x, y and z");
+  for (std::uint64_t v = 0; v < element.count; ++v) {
+    Point point = Point::Zero();
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const std::vector<double> values = body.next(element.properties[k]);
+      if (values.empty()) continue;
+      if (k == *x) point.x() = values[0];
+      if (k == *y) point.y() = values[0];
+      if (k == *z) point.z() = values[0];
+    }
+    scene.vertices.emplace_back(scene.metres_per_unit * point);
+  }
+  if (find(element, {"red", "diffuse_red"})) scene.notes.emplace_back("the colours of the vertices are ignored");
+  return scene;
+}
+
+Polygon polygon_of(const std::vector<double>& corners, const PlyBody& body) {
+  Polygon polygon;
+  polygon.line = body.line();
+  for (const double corner : corners) {
+    if (!(corner >= 0 && corner < no_polygon)) {
+      throw InputError(body.place(), "a face has a corner that names no vertex; export the model again");
+    }
+    polygon.corners.push_back(static_cast<std::uint32_t>(corner));
+  }
+  return polygon;
+}
+
+Scene with_faces(Scene scene, const PlyElement& element, PlyBody& body) {
+  LeftOut left_out;
+  const std::optional<std::size_t> corners = find(element, {"vertex_indices", "vertex_index"});
+  if (!corners) throw InputError(scene.file, "its faces lack the property vertex_indices");
+  for (std::uint64_t f = 0; f < element.count; ++f) {
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const std::vector<double> values = body.next(element.properties[k]);
+      if (k != *corners) continue;
+      if (values.size() < 3)
+        left_out.lose_face(too_few_corners, scene.groups[0], {.line = body.line()});
+      else
+        scene.polygons.push_back(polygon_of(values, body));
+    }
+  }
+  if (find(element, {"red", "diffuse_red"})) scene.notes.emplace_back("the colours of the faces are ignored");
+  return left_out.on(std::move(scene));
+}
+
+Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
+  if (element.properties.empty()) return scene;
+  for (std::uint64_t k = 0; k < element.count; ++k) {
+    for (const PlyProperty& property : element.properties) body.next(property);
+  }
+  // Lists are of vertices, e.g. strips of triangles.
+  const bool has_faces = std::any_of(element.properties.begin(), element.properties.end(),
+                                     [](const PlyProperty& property) { return property.is_list; });
+  LeftOut left_out;
+  if (has_faces && element.count > 0)
+    left_out.lose("elements that hold lists and are not faces, left out", element.name);
+  else
+    left_out.lose_without_area("elements that are neither vertices nor faces, left out", element.name, element.count);
+  return left_out.on(std::move(scene));
+}
+
+}  // namespace
+
+Scene read_ply(const std::filesystem::path& file, double metres_per_unit) {
+  const std::string bytes = read_text(file, file.string(), "the model file");
+  const PlyHeader header = read_ply_header(bytes, file.string());
+  PlyBody body(bytes, header, file.string());
+  Scene scene = scene_without_materials(file.string(), metres_per_unit);
+  scene.groups.push_back(file.stem().string());
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex") {
+      scene = with_vertices(std::move(scene), element, body);
+    } else if (element.name == "face") {
+      scene = with_faces(std::move(scene), element, body);
+    } else {
+      scene = without(std::move(scene), element, body);
+    }
+  }
+  for (const Polygon& polygon : scene.polygons) {
+    if (*std::max_element(polygon.corners.begin(), polygon.corners.end()) >= scene.vertices.size()) {
+      throw InputError(polygon.line > 0 ? file.string() + ":" + std::to_string(polygon.line) : file.string(),
+                       "a face has a corner that names no vertex; export the model again");
+    }
+  }
+  scene.sha256 = sha256({&bytes, 1});
+  return scene;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,282 @@
+#include "input/mitsuba/mitsuba_file.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/reading_limits.h"
+#include "input/text.h"
+#include "input/toml/turned_about.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <system_error>
+
+namespace patchlight {
+namespace {
+
+// "toWorld" and "to_world" as "toworld".
+std::string plain_name(const char* name) {
+  std::string result;
+  for (; *name != 0; ++name) {
+    if (*name >= 'A' && *name <= 'Z') {
+      result += static_cast<char>(*name - 'A' + 'a');
+    } else if (*name != '_') {
+      result += *name;
+    }
+  }
+  return result;
+}
+
+// From a frame that looks along +z, with y up, to the world; its x axis points to the left.
+std::optional<Eigen::Matrix4d> look_at(const Vector& origin, const Vector& target, const Vector& up) {
+  const Vector forward = (target - origin).stableNormalized();
+  const Vector left = up.cross(forward).stableNormalized();
+  if (!(forward.norm() > 0.5) || !(left.norm() > 0.5)) return std::nullopt;
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() << left, forward.cross(left), forward;
+  matrix.topRightCorner<3, 1>() = origin;
+  return matrix;
+}
+
+Eigen::Matrix4d with_linear(const Eigen::Matrix3d& linear) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = linear;
+  return matrix;
+}
+
+}  // namespace
+
+MitsubaFile::MitsubaFile(const std::filesystem::path& file, const std::filesystem::path& confine) {
+  add(file, confine, file.string(), 0);
+  struct Textures : pugi::xml_tree_walker {
+    std::vector<pugi::xml_node> found;
+    bool for_each(pugi::xml_node& node) override {
+      if (std::string_view(node.name()) == "texture") found.push_back(node);
+      return true;
+    }
+  } textures;
+  for (const std::unique_ptr<XmlFile>& xml : files_) xml->document.traverse(textures);
+  std::set<std::filesystem::path> pictures;
+  for (const pugi::xml_node& texture : textures.found) {
+    if (text(texture, "type") == "bitmap") pictures.insert(picture_file(texture));
+  }
+  pictures_ = picture_colours({pictures.begin(), pictures.end()}, confine, file.string());
+}
+
+std::filesystem::path MitsubaFile::picture_file(const pugi::xml_node& texture) const {
+  return std::filesystem::path(files_[0]->file).parent_path() / word(texture, "filename", "");
+}
+
+std::optional<Spectrum> MitsubaFile::picture(const pugi::xml_node& texture) const {
+  const auto found = pictures_.by_file.find(picture_file(texture).string());
+  return found == pictures_.by_file.end() ? std::nullopt : std::optional(found->second);
+}
+
+void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,
+                      std::uint32_t line) {
+  constexpr std::size_t most_files = 1000;  // each shape looks for its own
+  require_within(confine, file, where);
+  std::error_code error;
+  open_.push_back(std::filesystem::weakly_canonical(file, error));
+  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 || files_.size() == most_files ||
+      open_.size() > reading_limits::nesting)
+    throw InputError(where, "includes " + file.string() +
+                                ", which includes this file again, or more than 1,000 files, or is more than 64 deep");
+  files_.push_back(std::make_unique<XmlFile>(read_xml_file(file, where)));
+  lines_.push_back(line);
+  const XmlFile& xml = *files_.back();
+  const pugi::xml_node root = xml.document.child("scene");
+  if (!root) throw InputError(where, "has no <scene>; expected a Mitsuba scene, <scene version=\"3.0.0\">");
+
+  struct Ids : pugi::xml_tree_walker {
+    std::map<std::string, pugi::xml_node>* by_id = nullptr;
+    bool for_each(pugi::xml_node& node) override {
+      if (node.attribute("id") && std::string_view(node.name()) != "ref")
+        by_id->emplace(node.attribute("id").value(), node);
+      return true;
+    }
+  } ids;
+  ids.by_id = &by_id_;
+  files_.back()->document.traverse(ids);
+  for (const pugi::xml_node& node : root.children()) {
+    const std::string_view kind = node.name();
+    if (kind == "default") {
+      const std::string value = node.attribute("value").value();
+      if (value.size() > reading_limits::variable_length)
+        throw InputError(place_of(xml, node), "<default> has a value of more than 4,096 characters; expected fewer");
+      defaults_.emplace(node.attribute("name").value(), value);
+    } else if (kind == "include") {
+      add(file.parent_path() / text(node, "filename"), confine, place_of(xml, node),
+          line == 0 ? line_of(xml, node) : line);
+    } else if (node.type() == pugi::node_element) {
+      elements_.push_back(node);
+    }
+  }
+  open_.pop_back();
+}
+
+const XmlFile& MitsubaFile::file_of(const pugi::xml_node& node) const {
+  const pugi::xml_node root = node.root();
+  return **std::find_if(files_.begin(), files_.end() - 1, [&](const auto& file) { return file->document == root; });
+}
+
+std::string MitsubaFile::place(const pugi::xml_node& node) const { return place_of(file_of(node), node); }
+
+std::uint32_t MitsubaFile::line(const pugi::xml_node& node) const {
+  const XmlFile& file = file_of(node);
+  for (std::size_t k = 1; k < files_.size(); ++k) {
+    if (files_[k].get() == &file) return lines_[k];
+  }
+  return line_of(file, node);
+}
+
+// The longest name that is known counts: $spp2 is not $spp and a 2.
+std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute) const {
+  const std::string_view said = node.attribute(attribute).value();
+  std::string result;
+  for (std::size_t at = 0; at < said.size(); ++at) {
+    if (said[at] != '$') {
+      result += said[at];
+      continue;
+    }
+    const std::pair<const std::string, std::string>* best = nullptr;
+    for (const auto& known : defaults_) {
+      const bool is_it = !known.first.empty() && said.substr(at + 1, known.first.size()) == known.first;
+      if (is_it && (best == nullptr || known.first.size() > best->first.size())) best = &known;
+    }
+    if (best == nullptr)
+      throw InputError(place(node), "'" + std::string(said) +
+                                        "' names what no <default> before it says; add one, as <default name=\"size\" "
+                                        "value=\"1\"/>");
+    result += best->second;
+    at += best->first.size();
+    if (result.size() > reading_limits::text_length)
+      throw InputError(place(node), std::string(attribute) +
+                                        " has more than a million characters, with the values of its "
+                                        "variables; expected fewer");
+  }
+  return result;
+}
+
+pugi::xml_node MitsubaFile::property(const pugi::xml_node& node, const std::string& name) const {
+  const pugi::xml_node found =
+      node.find_child([&](const pugi::xml_node& child) { return plain_name(child.attribute("name").value()) == name; });
+  if (std::string_view(found.name()) != "ref") return found;
+  const auto meant = by_id_.find(text(found, "id"));
+  if (meant == by_id_.end())
+    throw InputError(place(found), "<ref> names '" + text(found, "id") + "', which nothing has as its id");
+  return meant->second;
+}
+
+std::string MitsubaFile::word(const pugi::xml_node& node, const std::string& name, const std::string& otherwise) const {
+  const pugi::xml_node found = property(node, name);
+  return found ? text(found, "value") : otherwise;
+}
+
+std::vector<double> MitsubaFile::numbers(const pugi::xml_node& node, const char* attribute) const {
+  std::string values = text(node, attribute);
+  std::replace_if(
+      values.begin(), values.end(), [](char c) { return c == ',' || c == '\n' || c == '\r'; }, ' ');
+  std::vector<double> found;
+  for (const std::string_view word : words(values)) {
+    const std::optional<double> number = finite_number(word);
+    if (!number)
+      throw InputError(place(node), "<" + std::string(node.name()) + ">: found '" + std::string(word) + "' where " +
+                                        attribute + " has a number");
+    found.push_back(*number);
+  }
+  return found;
+}
+
+double MitsubaFile::only_number(const pugi::xml_node& node, const char* attribute) const {
+  const std::vector<double> found = numbers(node, attribute);
+  if (found.size() == 1) return found[0];
+  throw InputError(place(node), "<" + std::string(node.name()) + ">: found '" + text(node, attribute) +
+                                    "' where one number is expected");
+}
+
+double MitsubaFile::number(const pugi::xml_node& node, const std::string& name, double otherwise) const {
+  const pugi::xml_node found = property(node, name);
+  return found ? only_number(found, "value") : otherwise;
+}
+
+bool MitsubaFile::flag(const pugi::xml_node& node, const std::string& name) const {
+  return word(node, name, "false") == "true";
+}
+
+// value="1, 2, 3", value="2" for all, or x, y and z one by one.
+Vector MitsubaFile::axes(const pugi::xml_node& node, double otherwise) const {
+  Vector result = Vector::Constant(otherwise);
+  if (node.attribute("value")) {
+    const std::vector<double> found = numbers(node, "value");
+    if (found.size() == 1) return Vector::Constant(found[0]);
+    if (found.size() != 3)
+      throw InputError(place(node), "<" + std::string(node.name()) + ">: expected one or three numbers, found '" +
+                                        text(node, "value") + "'");
+    return {found[0], found[1], found[2]};
+  }
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (node.attribute(names[k])) result[k] = only_number(node, names[k]);
+  }
+  return result;
+}
+
+Vector MitsubaFile::vector(const pugi::xml_node& node, const std::string& name, const Vector& otherwise) const {
+  const pugi::xml_node found = property(node, name);
+  return found ? axes(found, 0) : otherwise;
+}
+
+Eigen::Matrix4d MitsubaFile::step(const pugi::xml_node& node) const {
+  const std::string kind = plain_name(node.name());
+  if (kind == "translate") {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topRightCorner<3, 1>() = axes(node, 0);
+    return matrix;
+  }
+  if (kind == "scale") return with_linear(axes(node, 1).asDiagonal());
+  if (kind == "rotate") {
+    const Vector axis = axes(node, 0);
+    if (!(axis.stableNorm() > 0)) throw InputError(place(node), "<rotate> has the axis 0, 0, 0; expected a direction");
+    return with_linear(turned_about(axis.stableNormalized(), only_number(node, "angle")));
+  }
+  if (kind == "matrix") {
+    const std::vector<double> m = numbers(node, "value");
+    if (m.size() == 9) return with_linear(Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.data()));
+    if (m.size() == 16) return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
+    throw InputError(place(node), "<matrix> has " + std::to_string(m.size()) + " numbers; expected 9 or 16");
+  }
+  if (kind == "lookat") {
+    const auto point = [&](const char* name, const std::vector<double>& otherwise) {
+      const std::vector<double> found = node.attribute(name) ? numbers(node, name) : otherwise;
+      if (found.size() != 3) throw InputError(place(node), std::string("<lookat>: expected three numbers in ") + name);
+      return Vector(found[0], found[1], found[2]);
+    };
+    const auto matrix = look_at(point("origin", {0, 0, 0}), point("target", {0, 0, 1}), point("up", {0, 1, 0}));
+    if (matrix) return *matrix;
+    throw InputError(place(node),
+                     "<lookat> looks nowhere, or along its up; expected two places and a direction across");
+  }
+  throw InputError(place(node), "the transformation <" + std::string(node.name()) +
+                                    "> is not known; expected translate, scale, rotate, matrix or lookat");
+}
+
+Eigen::Matrix4d MitsubaFile::to_world(const pugi::xml_node& node) const {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  for (const pugi::xml_node& child : property(node, "toworld").children()) {
+    if (child.type() == pugi::node_element) matrix = step(child) * matrix;
+  }
+  return matrix;
+}
+
+pugi::xml_node MitsubaFile::nested(const pugi::xml_node& node, const std::string& kind) const {
+  for (const pugi::xml_node& child : node.children()) {
+    if (child.name() == kind) return child;
+    if (std::string_view(child.name()) != "ref") continue;
+    const auto found = by_id_.find(text(child, "id"));
+    if (found != by_id_.end() && found->second.name() == kind) return found->second;
+  }
+  return {};
+}
+
+}  // namespace patchlight

@@ -1,0 +1,122 @@
+#include "input/radiance/radiance_material.h"
+
+#include "input/stated_panes.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+Material black(std::string name) { return {std::move(name), rgb(0, 0, 0), rgb(0, 0, 0)}; }
+
+Spectrum colour_in(const std::vector<double>& numbers) { return rgb(numbers[0], numbers[1], numbers[2]); }
+
+const char* const matt_gloss = "gloss becomes matt";
+
+RadianceMaterial translucent_of(const std::string& name, const std::vector<double>& numbers, std::size_t transmitted) {
+  const double gloss = numbers[3];
+  const double through = numbers[transmitted];
+  const double straight = numbers[transmitted + 1];
+  std::string simplified;
+  if (through > 0 && straight > 0 && straight < 1)
+    simplified =
+        straight > 0.5 ? "light that goes through scattered is lost" : "light that goes straight through is lost";
+  if (gloss > 0) simplified += (simplified.empty() ? "" : ", ") + std::string(matt_gloss);
+  return {translucent(name, colour_in(numbers), gloss, through, straight), simplified};
+}
+
+// A solid body of glass; the two faces of a sheet of it count once, as those of panes do.
+RadianceMaterial body_of_glass(const std::string& name, double stated_index) {
+  const double index = plausible_index(stated_index);
+  Material material = black(name);
+  const double share = highest_transmittance(index);
+  material.transmittance = rgb(share, share, share);
+  material.index = index;
+  return {material, "what it absorbs and how it bends light are left out: its surfaces are thin clear panes"};
+}
+
+RadianceMaterial glossy(const std::string& kind, const std::string& name, const std::vector<double>& numbers) {
+  const double gloss = numbers[3];
+  const double roughness = numbers[4];
+  if (kind == "plastic" || kind == "plastic2")
+    return {plastic(name, colour_in(numbers), gloss), gloss > 0 ? matt_gloss : ""};
+  return {metal(name, colour_in(numbers), gloss, roughness), gloss > 0 && roughness > 0 ? matt_gloss : ""};
+}
+
+RadianceMaterial light_of(const std::string& kind, const std::string& name, const std::vector<double>& numbers) {
+  if (kind == "spotlight")
+    return {black(name), "its beam is not carried, it emits nothing: a [[luminaire]] of kind \"spot\" can stand for it",
+            true};
+  if (kind == "glow" && numbers[3] < 0) return {black(name), "it gives no light, as its radius is negative"};
+  return {emitter(name, colour_in(numbers)), kind == "illum" ? "it emits evenly, as a light does" : ""};
+}
+
+}  // namespace
+
+Material plastic(std::string name, const Spectrum& reflectance, double specularity) {
+  Material material = black(std::move(name));
+  material.reflectance = reflectance * (1 - specularity) + specularity;
+  return material;
+}
+
+Material metal(std::string name, const Spectrum& reflectance, double specularity, double roughness) {
+  Material material = black(std::move(name));
+  const bool is_smooth = roughness == 0;
+  material.reflectance = reflectance * (is_smooth ? 1 - specularity : 1);
+  if (is_smooth && specularity > 0) material.specular_reflectance = reflectance * specularity;
+  return material;
+}
+
+Material glass(std::string name, const Spectrum& transmissivity, double index) {
+  const double r = std::pow((index - 1) / (index + 1), 2);
+  Material material = black(std::move(name));
+  material.index = index;
+  material.transmittance = transmissivity * std::pow(1 - r, 2) / (1 - (r * transmissivity).square());
+  return material;
+}
+
+Material translucent(std::string name, const Spectrum& colour, double specularity, double transmitted,
+                     double straight) {
+  Material material = black(std::move(name));
+  const Spectrum scattered = colour * (1 - specularity);
+  material.reflectance = scattered * (1 - transmitted) + specularity;
+  if (straight > 0.5) {
+    material.transmittance = scattered * transmitted * straight;
+  } else if (transmitted > 0) {
+    material.diffuse_transmittance = scattered * transmitted * (1 - straight);
+  }
+  return material;
+}
+
+Material emitter(std::string name, const Spectrum& radiance) {
+  Material material = black(std::move(name));
+  material.exitance = std::numbers::pi * radiance;  // E = pi L
+  return material;
+}
+
+std::optional<RadianceMaterial> radiance_material(const std::string& kind, const std::string& name,
+                                                  const std::vector<double>& numbers) {
+  if (kind == "plastic" || kind == "metal" || kind == "plastic2" || kind == "metal2")
+    return glossy(kind, name, numbers);
+  if (kind == "trans") return translucent_of(name, numbers, 5);
+  if (kind == "trans2") return translucent_of(name, numbers, 6);
+  if (kind == "mirror") return RadianceMaterial{metal(name, colour_in(numbers), 1, 0), ""};
+  if (kind == "glass")
+    return RadianceMaterial{glass(name, colour_in(numbers), numbers.size() > 3 ? numbers[3] : usual_index), ""};
+  if (kind == "dielectric") return body_of_glass(name, numbers[3]);
+  if (kind == "light" || kind == "glow" || kind == "illum" || kind == "spotlight") return light_of(kind, name, numbers);
+  return std::nullopt;
+}
+
+std::size_t least_arguments(const std::string& kind) {
+  static const std::map<std::string, std::size_t> least = {
+      {"plastic", 5}, {"metal", 5}, {"plastic2", 6},   {"metal2", 6}, {"trans", 7}, {"trans2", 8},   {"glass", 3},
+      {"mirror", 3},  {"light", 3}, {"dielectric", 5}, {"glow", 4},   {"illum", 3}, {"spotlight", 7}};
+  const auto found = least.find(kind);
+  return found == least.end() ? 0 : found->second;
+}
+
+}  // namespace patchlight

@@ -1,0 +1,163 @@
+#include "input/radiance/radiance_xform.h"
+
+#include "patchlight/base/error.h"
+
+#include "input/text.h"
+#include "input/toml/turned_about.h"
+
+#include <cmath>
+#include <optional>
+
+namespace patchlight {
+namespace {
+
+constexpr std::size_t most_copies = 100'000;
+
+// The words, of which numbers and others are taken one after the other.
+class XformWords {
+ public:
+  XformWords(std::span<const std::string> words, const std::string& where) : words_(words), where_(where) {}
+
+  bool has_option() const { return at_ < words_.size() && words_[at_].size() > 1 && words_[at_][0] == '-'; }
+  const std::string& option() { return option_ = words_[at_++]; }
+  std::span<const std::string> rest() const { return words_.subspan(at_); }
+
+  const std::string& word() {
+    if (at_ == words_.size()) refuse("something has to follow " + option_);
+    return words_[at_++];
+  }
+
+  double number() {
+    const std::string& text = word();
+    const std::optional<double> value = finite_number(text);
+    if (!value) refuse("found '" + text + "' where " + option_ + " has a number");
+    return *value;
+  }
+
+  std::size_t count() {
+    constexpr double most = 1e6;
+    const double value = number();
+    if (!(value >= 0 && value <= most) || std::floor(value) != value)
+      refuse(option_ + " has a whole number from 0 to 1,000,000");
+    return static_cast<std::size_t>(value);
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const { throw InputError(where_, "xform: " + message); }
+
+ private:
+  std::span<const std::string> words_;
+  const std::string& where_;
+  std::size_t at_ = 0;
+  std::string option_;
+};
+
+// Options that move: nothing for another one.
+std::optional<Eigen::Affine3d> step_of(const std::string& option, XformWords& words) {
+  Eigen::Affine3d step = Eigen::Affine3d::Identity();
+  const std::size_t axis = option.size() == 3 ? std::string("xyz").find(option[2]) : std::string::npos;
+  const bool has_axis = axis != std::string::npos;
+  const auto a = static_cast<Eigen::Index>(has_axis ? axis : 0);
+  if (option == "-t") {
+    for (Eigen::Index k = 0; k < 3; ++k) step.translation()[k] = words.number();
+  } else if (option == "-s") {
+    step.linear() *= words.number();
+  } else if (option[1] == 's' && has_axis) {
+    step.linear()(a, a) = words.number();
+  } else if (option[1] == 'm' && has_axis) {
+    step.linear()(a, a) = -1;
+  } else if (option[1] == 'r' && has_axis) {
+    step.linear() = turned_about(Vector::Unit(a), words.number());
+  } else {
+    return std::nullopt;
+  }
+  if (step.linear().determinant() == 0)
+    words.refuse(option + " makes everything flat; expected a factor that is not 0");
+  return step;
+}
+
+// What moves things, with the count before it: once, so many times over, or, for a copy each, none to so many times.
+struct Block {
+  std::size_t count = 1;
+  bool is_array = false;
+  Eigen::Affine3d step = Eigen::Affine3d::Identity();
+};
+
+// So many times over, by squares.
+Eigen::Affine3d power(Eigen::Affine3d step, std::size_t count) {
+  Eigen::Affine3d result = Eigen::Affine3d::Identity();
+  for (; count > 0; count /= 2, step = step * step) {
+    if (count % 2 == 1) result = step * result;
+  }
+  return result;
+}
+
+// Every place, moved on by every step of the block: the last array changes fastest.
+std::vector<Eigen::Affine3d> moved_by(const std::vector<Eigen::Affine3d>& places, const Block& block,
+                                      const XformWords& words) {
+  if (block.is_array && places.size() * block.count > most_copies)
+    words.refuse("makes more than 100,000 copies; expected smaller arrays");
+  const Eigen::Affine3d once = power(block.step, block.is_array ? 0 : block.count);
+  std::vector<Eigen::Affine3d> moved;
+  for (const Eigen::Affine3d& place : places) {
+    Eigen::Affine3d next = once * place;
+    for (std::size_t k = 1; k < block.count && block.is_array; ++k, next = block.step * next) moved.push_back(next);
+    if (block.count > 0 || !block.is_array) moved.push_back(next);
+  }
+  return moved;
+}
+
+// Every place, moved on by what each line of a file says.
+std::vector<Eigen::Affine3d> moved_by_lines(const std::vector<Eigen::Affine3d>& places,
+                                            const std::vector<std::vector<std::string>>& lines,
+                                            const std::string& where) {
+  std::vector<Eigen::Affine3d> moved;
+  const auto no_file = [&](const std::string& file) -> std::vector<std::vector<std::string>> {
+    throw InputError(where, "xform: -f stands in the file of another -f, " + file);
+  };
+  for (const std::vector<std::string>& line : lines) {
+    if (line.empty()) continue;
+    const RadianceXform one = radiance_xform(line, where, no_file);
+    if (places.size() * one.copies.size() + moved.size() > most_copies)
+      throw InputError(where, "xform: makes more than 100,000 copies; expected smaller arrays");
+    for (const Eigen::Affine3d& place : places)
+      for (const Eigen::Affine3d& copy : one.copies) moved.push_back(copy * place);
+  }
+  return moved;
+}
+
+}  // namespace
+
+RadianceXform radiance_xform(std::span<const std::string> arguments, const std::string& where,
+                             const std::function<std::vector<std::vector<std::string>>(const std::string&)>& words_of) {
+  RadianceXform result;
+  XformWords words(arguments, where);
+  Block block;
+  const auto end_block = [&] {
+    result.copies = moved_by(result.copies, block, words);
+    block = Block{};
+  };
+  while (words.has_option()) {
+    const std::string option = words.option();
+    if (option == "-n" || option == "-m") {
+      (option == "-n" ? result.name : result.modifier) = words.word();
+    } else if (option == "-I") {
+      result.turns_fronts = true;
+    } else if (option == "-i" || option == "-a") {
+      end_block();
+      block.is_array = option == "-a";
+      block.count = words.count();
+    } else if (option == "-f") {
+      end_block();
+      result.copies = moved_by_lines(result.copies, words_of(words.word()), where);
+    } else if (option != "-c" && option != "-e" && option != "-l") {
+      const std::optional<Eigen::Affine3d> step = step_of(option, words);
+      if (!step) words.refuse("the option " + option + " is not known");
+      block.step = *step * block.step;
+    }
+  }
+  end_block();
+  for (const std::string& file : words.rest()) result.files.push_back(file);
+  return result;
+}
+
+}  // namespace patchlight

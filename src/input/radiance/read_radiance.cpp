@@ -1,0 +1,451 @@
+#include "input/radiance/read_radiance.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
+
+#include "base/rounded.h"
+#include "files/sha256.h"
+#include "input/at_line.h"
+#include "input/left_out.h"
+#include "input/materials.h"
+#include "input/radiance/radiance_genbox.h"
+#include "input/radiance/radiance_material.h"
+#include "input/radiance/radiance_text.h"
+#include "input/radiance/radiance_xform.h"
+#include "input/reading_limits.h"
+#include "input/round_shapes.h"
+#include "input/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+// True for the kinds of surfaces that have a shape of their own: polygon, sphere, bubble, cylinder, tube, cone, cup
+// and ring.
+bool is_radiance_surface(const std::string& kind);
+
+constexpr std::array surfaces = {"polygon", "sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring"};
+
+Point point_at(const RadiancePrimitive& primitive, std::size_t k) {
+  return {primitive.numbers[k], primitive.numbers[k + 1], primitive.numbers[k + 2]};
+}
+
+FacetedShape turned_inside_out(FacetedShape shape) {
+  for (std::vector<std::uint32_t>& face : shape.faces) std::reverse(face.begin(), face.end());
+  return shape;
+}
+
+FacetedShape outline_of(const RadiancePrimitive& primitive) {
+  FacetedShape shape;
+  for (std::size_t k = 0; k < primitive.numbers.size(); k += 3) shape.points.push_back(point_at(primitive, k));
+  shape.faces.emplace_back(shape.points.size());
+  std::iota(shape.faces[0].begin(), shape.faces[0].end(), 0U);
+  return shape;
+}
+
+// With two radii, or one for both ends.
+FacetedShape cone_of(const RadiancePrimitive& primitive) {
+  const double first = primitive.numbers[6];
+  return faceted_cone(point_at(primitive, 0), point_at(primitive, 3), first,
+                      primitive.numbers.size() > 7 ? primitive.numbers[7] : first);
+}
+
+FacetedShape ring_of(const RadiancePrimitive& primitive) {
+  const auto [inner, outer] = std::minmax(primitive.numbers[6], primitive.numbers[7]);
+  return faceted_ring(point_at(primitive, 0), point_at(primitive, 3), inner, outer);
+}
+
+void require_arguments(const RadiancePrimitive& primitive, const std::string& where) {
+  const std::size_t found = primitive.numbers.size();
+  const std::string start = primitive.kind + " " + primitive.name + " has " + std::to_string(found) + " numbers; ";
+  if (primitive.kind == "polygon") {
+    if (found >= 9 && found % 3 == 0) return;
+    throw InputError(where, start + "expected three for each of its corners, nine at least");
+  }
+  const bool is_sphere = primitive.kind == "sphere" || primitive.kind == "bubble";
+  const bool is_cylinder = primitive.kind == "cylinder" || primitive.kind == "tube";
+  const std::size_t expected = is_sphere ? 4 : is_cylinder ? 7 : 8;
+  if (found != expected) throw InputError(where, start + "expected " + std::to_string(expected));
+  const double least = *std::min_element(primitive.numbers.begin() + (is_sphere ? 3 : 6), primitive.numbers.end());
+  if (least < 0)
+    throw InputError(where, primitive.kind + " " + primitive.name + " has a negative radius; expected 0 or more");
+}
+
+bool is_radiance_surface(const std::string& kind) {
+  return std::find(surfaces.begin(), surfaces.end(), kind) != surfaces.end();
+}
+
+// True for those that facets stand for.
+bool is_round(const std::string& kind) { return is_radiance_surface(kind) && kind != "polygon"; }
+
+// The faces of such a surface, in units of the file; a polygon has one. Throws InputError at `where`: it has another
+// number of arguments than it should, a length or a radius that is not above 0.
+FacetedShape radiance_surface(const RadiancePrimitive& primitive, const std::string& where) {
+  require_arguments(primitive, where);
+  const std::string& kind = primitive.kind;
+  if (kind == "polygon") return outline_of(primitive);
+  FacetedShape shape;
+  if (kind == "sphere" || kind == "bubble") {
+    if (primitive.numbers[3] > 0) shape = faceted_sphere(point_at(primitive, 0), primitive.numbers[3]);
+  } else {
+    shape = kind == "ring" ? ring_of(primitive) : cone_of(primitive);
+  }
+  if (shape.faces.empty())
+    throw InputError(where, kind + " " + primitive.name +
+                                " has no area; expected radii above 0 and two places, or a "
+                                "direction, that are not one");
+  const bool is_inside_out = kind == "bubble" || kind == "tube" || kind == "cup";
+  return is_inside_out ? turned_inside_out(std::move(shape)) : shape;
+}
+
+// Light from far away, from the disk that Radiance's source subtends on the sphere of directions.
+struct FarSource {
+  std::string name;
+  Vector direction;          // unit, towards it
+  double degrees = 0;        // across the disk
+  Spectrum radiance{};       // W/(m^2 sr)
+  bool has_pattern = false;  // the radiance varies over it
+};
+
+constexpr double most_degrees_of_a_sun = 5;
+
+// A half sphere around the vertical, or all of it.
+bool is_sky(const FarSource& source) {
+  const bool is_half = source.degrees >= 179.9 && std::abs(source.direction.z()) > 0.999;
+  return !source.has_pattern && (is_half || source.degrees >= 359);
+}
+
+// E = L pi sin^2(a / 2) across the direction to a disk of angle a: 6.7967e-5 sr for the sun's .533 degrees.
+Sun far_sun(const FarSource& source) {
+  const double radius = source.degrees * std::numbers::pi / 360;
+  return {source.direction, source.radiance * std::numbers::pi * std::pow(std::sin(radius), 2)};
+}
+
+Sky with_half(Sky sky, const FarSource& source) {
+  const bool is_all = source.degrees >= 359;
+  if (is_all || source.direction.z() > 0) sky.zenith_radiance = source.radiance;
+  if (is_all || source.direction.z() < 0) sky.ground_radiance = source.radiance;
+  return sky;
+}
+
+// A source primitive, turned by `turn`; its radiance is left open. Throws InputError at `where`: it has no four
+// numbers, no direction or no angle.
+FarSource far_source(const RadiancePrimitive& primitive, const Eigen::Matrix3d& turn, const std::string& where) {
+  if (primitive.numbers.size() != 4)
+    throw InputError(where, "source " + primitive.name + " has " + std::to_string(primitive.numbers.size()) +
+                                " numbers; expected a direction and an angle in degrees, 4");
+  const Vector direction = turn * Vector(primitive.numbers[0], primitive.numbers[1], primitive.numbers[2]);
+  const double degrees = primitive.numbers[3];
+  if (!(direction.stableNorm() > 0) || !std::isfinite(direction.stableNorm()) || !(degrees > 0 && degrees <= 360))
+    throw InputError(where, "source " + primitive.name + " has no direction, or no angle above 0 up to 360 degrees");
+  return {primitive.name, direction.stableNormalized(), degrees};
+}
+
+// The scene with what can be carried: the first disk up to 5 degrees across is the sun, even half spheres above and
+// below are an even sky and the ground. Notes name the others, and what to do for a sky.
+Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
+  LeftOut left_out;
+  for (const FarSource& source : sources) {
+    const std::string name = "source " + source.name;
+    if (source.degrees <= most_degrees_of_a_sun && !source.has_pattern && !scene.sun) {
+      scene.sun = far_sun(source);
+      scene.notes.push_back(name + " of " + rounded(source.degrees) + " degrees is the sun");
+    } else if (is_sky(source)) {
+      scene.sky =
+          with_half(scene.sky.value_or(Sky{.zenith_radiance = rgb(0, 0, 0), .ground_radiance = rgb(0, 0, 0)}), source);
+    } else if (source.degrees > most_degrees_of_a_sun) {
+      left_out.lose(
+          "sources of light that varies, or that are no half sphere, are left out: --sky gives a sky, e.g. --sky "
+          "overcast:10000lx",
+          name + " of " + rounded(source.degrees) + " degrees");
+    } else {
+      left_out.lose("sources are left out beside a sun, or with a pattern", name);
+    }
+  }
+  return left_out.on(std::move(scene));
+}
+
+namespace fs = std::filesystem;
+
+// How what is read below an !xform stands in the scene.
+struct Frame {
+  Eigen::Affine3d placement = Eigen::Affine3d::Identity();
+  std::string modifier;  // instead of those of surfaces; empty: their own
+  std::string prefix;
+  bool turns_fronts = false;
+  std::uint32_t line = 0;  // in the file at the top; 0 there
+};
+
+// The outer frame counts where both name a modifier: it is done last.
+Frame inside(const Frame& outer, const RadianceXform& xform, const Eigen::Affine3d& copy, std::uint32_t line) {
+  return {outer.placement * copy, outer.modifier.empty() ? xform.modifier : outer.modifier,
+          xform.name.empty() ? outer.prefix : outer.prefix + xform.name + ".", outer.turns_fronts != xform.turns_fronts,
+          outer.line == 0 ? line : outer.line};
+}
+
+class RadianceReader {
+ public:
+  RadianceReader(double metres_per_unit, fs::path confine, RadianceModifiers known)
+      : confine_(std::move(confine)), modifiers_(std::move(known)) {
+    scene_.metres_per_unit = metres_per_unit;
+    top_.placement.linear() *= metres_per_unit;
+  }
+
+  RadianceModel model(const fs::path& file) && {
+    scene_.file = file.string();
+    scene_.up = Vector::UnitZ();
+    scene_.up_stated = true;
+    read(file, top_, file.string());
+    scene_.sha256 = sha256(digests_);
+    scene_ = with_far_sources(std::move(scene_), sources_);
+    scene_ = left_out_.on(std::move(scene_));
+    return {with_used_materials(std::move(scene_)), std::move(modifiers_)};
+  }
+
+ private:
+  // A file that several others name is read once.
+  const std::string& text_of(const fs::path& file, const std::string& where) {
+    const auto [found, is_new] = texts_.try_emplace(file.lexically_normal().string());
+    if (is_new) {
+      found->second = read_text(file, where, file.string());
+      if (!digests_.empty()) scene_.inputs.push_back(file);
+      digests_.push_back(sha256({&found->second, 1}));
+    }
+    return found->second;
+  }
+
+  // Beside the file that names it, or in the current folder.
+  fs::path found_file(const std::string& name, const fs::path& named_by, const std::string& where) const {
+    const fs::path beside = named_by.parent_path() / name;
+    for (const fs::path& candidate : {beside, fs::path(name)}) {
+      require_within(confine_, candidate, where);
+      std::error_code error;
+      if (fs::is_regular_file(candidate, error)) return candidate;
+    }
+    throw InputError(where, "names the file " + name +
+                                ", which is neither beside it nor in the current folder; put it there, or take it out");
+  }
+
+  void read(const fs::path& file, const Frame& frame, const std::string& where) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(file, error);
+    if (std::find(open_.begin(), open_.end(), place) != open_.end())
+      throw InputError(where, "names " + file.string() + ", which names this file again; a file cannot hold itself");
+    if (open_.size() == reading_limits::nesting) throw InputError(where, "files name each other more than 64 deep");
+    if (++files_ > reading_limits::files) throw InputError(where, "more than 200,000 files are named, counting copies");
+    open_.push_back(place);
+    RadianceText text(text_of(file, where), file.string());
+    while (text.has_more()) {
+      const RadiancePrimitive primitive = text.next();
+      const std::string here = at_line(file, primitive.line);
+      if (primitive.kind == "!") {
+        run(primitive, file, frame);
+      } else if (primitive.kind == "instance" || primitive.kind == "mesh") {
+        add_instance(primitive, file, frame);
+      } else if (primitive.kind == "source") {
+        add_source(primitive, frame, here);
+      } else if (is_radiance_surface(primitive.kind)) {
+        add_surface(primitive, frame, here, primitive.line);
+      } else {
+        modifiers_.define(primitive, here);
+      }
+    }
+    open_.pop_back();
+  }
+
+  std::vector<std::vector<std::string>> lines_of(const std::string& name, const fs::path& named_by,
+                                                 const std::string& where) {
+    std::vector<std::vector<std::string>> lines;
+    for (const TextLine& line : logical_lines(text_of(found_file(name, named_by, where), where))) {
+      std::vector<std::string> all;
+      for (const std::string_view word : words_before_comment(line.text)) all.emplace_back(word);
+      lines.push_back(std::move(all));
+    }
+    return lines;
+  }
+
+  // A line that starts programs: genbox and xform are done here, no other is run.
+  void run(const RadiancePrimitive& command, const fs::path& file, const Frame& frame) {
+    const std::string where = at_line(file, command.line);
+    const std::vector<std::vector<std::string>> stages = piped_commands(command.words[0]);
+    const auto is_known = [&](const std::vector<std::string>& words) {
+      return words[0] == "xform" || (words[0] == "genbox" && &words == &stages[0]);
+    };
+    if (stages.empty() || !std::all_of(stages.begin(), stages.end(), is_known)) return lose_program(command, where);
+    add_piped(stages, file, frame, command.line);
+  }
+
+  void lose_program(const RadiancePrimitive& command, const std::string& where) {
+    const std::string text(trimmed(command.words[0]));
+    if (text.starts_with("gensky") || text.starts_with("gendaylit"))
+      return left_out_.lose(
+          "programs that write skies are not run; --sky and --sun give one, e.g. --sky overcast:10000lx",
+          where + " !" + text.substr(0, text.find(' ')));
+    constexpr std::size_t most = 60;
+    left_out_.lose(
+        "programs other than !genbox and !xform are not run, and their surfaces are left out; replace the lines with "
+        "their output",
+        where + " !" + text.substr(0, most));
+  }
+
+  // The last program moves the surfaces of those before it.
+  void add_piped(std::span<const std::vector<std::string>> stages, const fs::path& file, const Frame& frame,
+                 std::uint32_t line) {
+    const std::string where = at_line(file, line);
+    const std::span words = std::span(stages.back()).subspan(1);
+    if (stages.back()[0] == "genbox") {
+      for (const RadiancePrimitive& surface : radiance_genbox(words, where)) add_surface(surface, frame, where, line);
+      return;
+    }
+    const RadianceXform xform = xform_of(words, file, where);
+    const bool is_first = stages.size() == 1;
+    if (is_first && xform.files.empty()) throw InputError(where, "xform without a file; expected the name of one");
+    if (!is_first && !xform.files.empty())
+      throw InputError(where, "xform names " + xform.files[0] + " and reads a pipe; expected one of them");
+    for (const Eigen::Affine3d& copy : xform.copies) {
+      if (++copies_ > reading_limits::copies)
+        throw InputError(where, "more than 1,000,000 copies are made; expected smaller arrays");
+      const Frame below = inside(frame, xform, copy, line);
+      if (!is_first) add_piped(stages.first(stages.size() - 1), file, below, line);
+      for (const std::string& name : xform.files) read(found_file(name, file, where), below, where);
+    }
+  }
+
+  RadianceXform xform_of(std::span<const std::string> words, const fs::path& file, const std::string& where) {
+    return radiance_xform(words, where, [&](const std::string& name) { return lines_of(name, file, where); });
+  }
+
+  // Octrees and meshes are in forms of their own; a scene file may stand for one.
+  void add_instance(const RadiancePrimitive& primitive, const fs::path& file, const Frame& frame) {
+    const std::string where = at_line(file, primitive.line);
+    if (primitive.words.empty()) throw InputError(where, primitive.kind + " " + primitive.name + " names no file");
+    if (fs::path(primitive.words[0]).extension() != ".rad") {
+      left_out_.lose("left out, of the kind " + primitive.kind + ", whose octrees and meshes cannot be read",
+                     frame.prefix + primitive.name);
+      return;
+    }
+    RadianceXform xform = xform_of(std::span(primitive.words).subspan(1), file, where);
+    xform.name = primitive.name;
+    if (primitive.modifier != "void") xform.modifier = primitive.modifier;
+    for (const Eigen::Affine3d& copy : xform.copies)
+      read(found_file(primitive.words[0], file, where), inside(frame, xform, copy, primitive.line), where);
+  }
+
+  // The modifier that a surface has; nothing for void. \throws InputError when it is not defined.
+  std::optional<std::size_t> modifier_of(const RadiancePrimitive& primitive, const Frame& frame,
+                                         const std::string& where) const {
+    const std::string& name = frame.modifier.empty() ? primitive.modifier : frame.modifier;
+    if (name == "void") return std::nullopt;
+    if (const auto found = modifiers_.place_of(name)) return found;
+    throw InputError(where, "the material " + name + " of " + primitive.kind + " " + primitive.name +
+                                " is not defined; name the file that defines it before this one, as in "
+                                "'materials.mat room.rad'");
+  }
+
+  // Nothing for what lets light pass as if it were not there.
+  std::optional<MaterialIndex> material_of(std::size_t place) {
+    const auto [known, is_new] = index_.emplace(place, std::nullopt);
+    if (!is_new) return known->second;
+    const RadianceModifier& modifier = modifiers_.at(modifiers_.material_below(place));
+    if (modifier.kind == "mist" || modifier.kind == "antimatter") {
+      left_out_.add("materials whose surfaces are left out, as they are mist or antimatter", modifier.name);
+      return std::nullopt;
+    }
+    if (modifiers_.has_pattern(place)) left_out_.add("patterns and textures of materials, left out", modifier.name);
+    std::optional<RadianceMaterial> material = radiance_material(modifier.kind, modifier.name, modifier.numbers);
+    if (!material) {
+      material = RadianceMaterial{{modifier.name, rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {}};
+      left_out_.add("materials of a kind that cannot be carried are taken for matt of reflectance 0.5",
+                    modifier.name + " (" + modifier.kind + ")");
+    }
+    if (!material->simplified.empty()) {
+      const std::string sentence = "materials of the kind " + modifier.kind + ": " + material->simplified;
+      if (material->loses_light)
+        left_out_.lose(sentence, modifier.name);
+      else
+        left_out_.add(sentence, modifier.name);
+    }
+    known->second = static_cast<MaterialIndex>(scene_.materials.size());
+    scene_.materials.push_back(std::move(material->material));
+    return known->second;
+  }
+
+  void add_surface(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where,
+                   std::uint32_t line) {
+    const FacetedShape shape = radiance_surface(primitive, where);
+    const std::optional<std::size_t> modifier = modifier_of(primitive, frame, where);
+    const std::optional<MaterialIndex> material = modifier ? material_of(*modifier) : std::nullopt;
+    if (!modifier) left_out_.add("surfaces without a material (void), left out", frame.prefix + primitive.name);
+    if (!material) return;
+    if (scene_.polygons.size() + shape.faces.size() > reading_limits::polygons)
+      throw InputError(where, "there are more than 10,000,000 faces, counting copies; expected smaller arrays");
+    if (is_round(primitive.kind)) {
+      left_out_.add("round surfaces have " + std::to_string(round_sides) +
+                        " sides, moved outward so that areas are kept; of the kind " + primitive.kind,
+                    frame.prefix + primitive.name);
+    }
+    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
+    for (const Point& point : shape.points) scene_.vertices.push_back(frame.placement * point);
+    const bool is_mirrored = frame.placement.linear().determinant() < 0;
+    for (std::vector<std::uint32_t> corners : shape.faces) {
+      for (std::uint32_t& corner : corners) corner += first;
+      // A mirrored copy keeps its front.
+      if (is_mirrored != frame.turns_fronts) std::reverse(corners.begin(), corners.end());
+      scene_.polygons.push_back({.corners = std::move(corners),
+                                 .material = *material,
+                                 .group = group(frame.prefix + primitive.name),
+                                 .line = frame.line == 0 ? line : frame.line});
+    }
+  }
+
+  std::uint32_t group(const std::string& name) {
+    const auto [found, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
+    if (is_new) scene_.groups.push_back(name);
+    return found->second;
+  }
+
+  void add_source(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where) {
+    const std::optional<std::size_t> modifier = modifier_of(primitive, frame, where);
+    if (!modifier) return;
+    const RadianceModifier& light = modifiers_.at(modifiers_.material_below(*modifier));
+    FarSource source = far_source(primitive, frame.placement.linear(), where);
+    if (light.kind != "light" && light.kind != "glow" && light.kind != "illum") return;
+    source.radiance = rgb(light.numbers[0], light.numbers[1], light.numbers[2]);
+    source.has_pattern = modifiers_.has_pattern(*modifier);
+    sources_.push_back(std::move(source));
+  }
+
+  fs::path confine_;
+  RadianceModifiers modifiers_;
+  Scene scene_;
+  Frame top_;
+  std::vector<fs::path> open_;                // the files that are being read, each named by the one before
+  std::map<std::string, std::string> texts_;  // of files
+  std::vector<std::string> digests_;          // of the same, in the order in which they were read
+  std::map<std::size_t, std::optional<MaterialIndex>> index_;  // of modifiers that surfaces have
+  std::map<std::string, std::uint32_t> groups_;
+  std::vector<FarSource> sources_;
+  LeftOut left_out_;
+  std::size_t files_ = 0;
+  std::size_t copies_ = 0;  // of !xform
+};
+
+}  // namespace
+
+RadianceModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
+                            RadianceModifiers known) {
+  return RadianceReader(metres_per_unit, confine, std::move(known)).model(file);
+}
+
+}  // namespace patchlight

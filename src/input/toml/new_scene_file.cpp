@@ -1,0 +1,294 @@
+#include "input/toml/new_scene_file.h"
+
+#include "patchlight/base/geometry.h"
+
+#include "base/rounded.h"
+#include "base/shortest.h"
+#include "input/materials.h"
+#include "input/toml/toml_sensors.h"
+#include "input/toml/toml_value.h"
+#include "scene/dark_solids.h"
+#include "scene/sealed_room.h"
+#include "scene/sensor_grid.h"
+#include "scene/window_areas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// A text as a string of a TOML file; control characters become question marks.
+std::string toml_text(const std::string& text);
+
+// A point as a list of a TOML file, "[1, 2.5, 0]", to a thousandth.
+std::string toml_text(const Point& point);
+
+std::string toml_text(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') result += '\\';
+    const bool is_control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+    result += is_control ? '?' : letter;
+  }
+  return result + "\"";
+}
+
+std::string toml_text(const Point& point) {
+  std::string text = "[";
+  for (const double value : point)
+    text += (text.size() > 1 ? ", " : "") + shortest(std::round(1000 * value) / 1000 + 0.0);
+  return text + "]";
+}
+
+constexpr std::size_t most_named = 12;
+constexpr double smallest_room = 2;  // m^2
+constexpr double lowest_room = 1.8;  // metres: so much is free over a floor
+
+std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
+  std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < smallest_room; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const NamedFloor& a, const NamedFloor& b) { return area_of(a.floor) > area_of(b.floor); });
+  return places;
+}
+
+// What of the scene is highest, along its upright axis.
+double top_of(const Scene& scene) {
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Point& vertex : scene.vertices) top = std::max(top, vertex.dot(scene.up));
+  return top;
+}
+
+// Has it a height above the floor that one can stand in? A space on a roof has not.
+bool is_under_something(const Floor& floor, double top) {
+  return !floor.outlines.empty() && floor.outlines[0][0].dot(floor.up) + lowest_room <= top;
+}
+
+std::vector<NamedFloor> floors_of_rooms(const Scene& scene) {
+  const double top = top_of(scene);
+  const std::vector<double> windows = window_areas(scene);
+  std::vector<NamedFloor> places;
+  for (std::size_t k = 0; k < scene.rooms.size(); ++k) {
+    Floor floor = floor_of_room(scene.rooms[k].faces, scene.up);
+    if (is_under_something(floor, top)) places.push_back({scene.rooms[k].name, std::move(floor), windows[k]});
+  }
+  return largest_first(std::move(places));
+}
+
+// Groups with a name, whose floor has something of the scene high over it.
+std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
+  std::vector<std::vector<PolygonIndex>> of_group(scene.groups.size());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) of_group[scene.polygons[p].group].push_back(p);
+  const double top = top_of(scene);
+  const std::vector<Solid> solids = dark_solids(scene);
+  std::vector<NamedFloor> places;
+  for (std::uint32_t group = 0; group < of_group.size(); ++group) {
+    if (group_name(scene, group).empty()) continue;
+    Floor floor = floor_of_polygons(scene, of_group[group], solids);
+    if (is_under_something(floor, top)) places.push_back({group_name(scene, group), std::move(floor), 0});
+  }
+  return largest_first(std::move(places));
+}
+
+std::string unit_name(double metres_per_unit) {
+  for (const auto& [name, length] : units) {
+    if (metres_per_unit == length) return name;
+  }
+  return "m";
+}
+
+std::string model_tables(const Scene& scene, const std::vector<std::filesystem::path>& models,
+                         std::optional<double> metres_per_unit, const std::filesystem::path& file) {
+  std::set<std::string> classes;
+  for (std::uint32_t group = 0; group < scene.groups.size(); ++group) {
+    const std::string name = group_name(scene, group);
+    const std::size_t end = name.find('_');
+    if (name.starts_with("Ifc") && end != std::string::npos) classes.insert(name.substr(0, end) + "_*");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  std::ostringstream text;
+  for (const std::filesystem::path& model : models) {
+    const std::filesystem::path absolute = std::filesystem::absolute(model);
+    const std::filesystem::path relative = absolute.lexically_relative(folder);
+    const bool is_near = !relative.empty() && *relative.begin() != "..";
+    text << "[[model]]\nfile = " << toml_text((is_near ? relative : absolute).string()) << '\n';
+    if (metres_per_unit) text << "unit = " << toml_text(unit_name(*metres_per_unit)) << '\n';
+    text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
+    std::string list;
+    for (const std::string& name : classes) {
+      const bool is_loose = name.find("Furnish") != std::string::npos || name.find("Flow") != std::string::npos ||
+                            name.find("Member") != std::string::npos || name.find("Railing") != std::string::npos;
+      if (is_loose) list += (list.empty() ? "" : ", ") + toml_text(name);
+    }
+    text << (list.empty() ? "\"chairs*\"" : list) << "]\n\n";
+  }
+  return text.str();
+}
+
+std::string spectrum_text(const Spectrum& spectrum) {
+  const std::string values = listed_shares(spectrum);
+  return values.find(',') == std::string::npos ? values : "[" + values + "]";
+}
+
+// Commented out: it says what is so without it.
+std::string material_tables(const Scene& scene) {
+  std::ostringstream text;
+  for (const Material& material : scene.materials) {
+    if (material.second_face || !(material.transmittance > 0).any()) continue;
+    text << "# [[material]]\n# name = " << toml_text(material.name)
+         << "\n# transmittance = " << spectrum_text(material.transmittance)
+         << "  # straight through, at right angles; 0 makes it opaque\n"
+         << "# reflectance = " << spectrum_text(material.reflectance)
+         << "  # diffuse\n# index = " << shortest(material.index) << "\n\n";
+  }
+  if (!text.str().empty()) return "# Glass, as the model has it. What is changed here counts.\n" + text.str();
+  return "# No material is clear. A window lets light in with:\n# [[material]]\n# name = \"Glass*\"\n"
+         "# transmittance = 0.8\n# reflectance = 0\n\n";
+}
+
+// Over the middle of a floor, as high as is free at least.
+std::optional<Point> place_over(const Floor& floor) {
+  const SensorGroup grid = floor_grid(floor, lowest_room, {std::sqrt(area_of(floor)) / 10, 0});
+  Point middle = Point::Zero();
+  for (const Sensor& sensor : grid.sensors) middle += sensor.point / static_cast<double>(grid.sensors.size());
+  const auto nearest = std::min_element(grid.sensors.begin(), grid.sensors.end(), [&](const auto& a, const auto& b) {
+    return (a.point - middle).squaredNorm() < (b.point - middle).squaredNorm();
+  });
+  return nearest == grid.sensors.end() ? std::nullopt : std::optional(nearest->point);
+}
+
+// In each of the largest named rooms.
+NewLight lamps_in_rooms(const Scene& scene) {
+  NewLight light{true, {}, {}};
+  for (const NamedRoom& room : scene.rooms) light.rooms_without.push_back(room.name);
+  for (const NamedFloor& place : floors_of_rooms(scene)) {
+    if (light.lamps.size() == most_named) break;
+    const std::optional<Point> lamp = place_over(place.floor);
+    if (!lamp) continue;
+    light.lamps.push_back(*lamp);
+    light.rooms_without.erase(std::find(light.rooms_without.begin(), light.rooms_without.end(), place.name));
+  }
+  return light;
+}
+
+// "# No lamp stands in: "store", "attic" and 3 more.", or nothing.
+std::string names_line(const std::string& what, const std::vector<std::string>& rooms) {
+  if (rooms.empty()) return {};
+  std::string list;
+  for (std::size_t k = 0; k < std::min(rooms.size(), most_named); ++k)
+    list += (list.empty() ? "" : ", ") + toml_text(rooms[k]);
+  if (rooms.size() > most_named) list += " and " + std::to_string(rooms.size() - most_named) + " more";
+  return "# " + what + ": " + list + ".\n";
+}
+
+// Commented out where no place for a lamp is known.
+std::string luminaire_table(const NewLight& light) {
+  std::string positions;
+  for (const Point& lamp : light.lamps) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
+  const bool is_known = !positions.empty();
+  const std::string mark = is_known ? "" : "# ";
+  return std::string("# Nothing in the model shines, and no daylight gets in: a lamp that shines all around") +
+         (is_known ? ".\n" : ",\n# for which no place was found.\n") +
+         names_line("No lamp stands in", light.rooms_without) + mark + "[[luminaire]]\n" + mark + "name = \"lamp\"\n" +
+         mark + "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
+         (is_known ? positions : "[X, Y, Z]") + "]\n" + mark + "lumens = 3000\n\n";
+}
+
+// A sky as the only light is not commented out.
+std::string sky_tables(const Scene& scene, bool is_only_light) {
+  const std::string mark = is_only_light ? "" : "# ";
+  const std::string why = is_only_light
+                              ? "# Nothing in the model shines: a sky, over a ground that reflects a fifth of it.\n"
+                          : has_lamp(scene) ? "# The model has lamps. With daylight as well:\n"
+                                            : "# Daylight, where a material above lets it in:\n";
+  return why + mark + "[sky]\n" + mark + "kind = \"overcast\"   # or \"uniform\", or \"clear\" with a sun\n" + mark +
+         "illuminance = 10000  # lx on the open ground\n\n" + mark + "[ground]\n" + mark + "reflectance = 0.2\n\n" +
+         "# [sun]\n# time = 2024-06-21T12:00:00Z\n# illuminance = 80000  # lx across its rays\n# [site]\n"
+         "# latitude = 52.5\n# longitude = 13.4\n\n";
+}
+
+std::string light_tables(const Scene& scene, const NewLight& light) {
+  if (light.is_sealed) return luminaire_table(light) + sky_tables(scene, false);
+  return sky_tables(scene, !has_lamp(scene));
+}
+
+// Over every room, or over those that have a place for sensors.
+std::string rooms_text(const FloorGrid& grid) {
+  if (grid.rooms.size() == 1) return toml_text(grid.rooms[0]);
+  std::string list;
+  for (const std::string& room : grid.rooms) list += "  " + toml_text(room) + ",\n";
+  return "[\n" + list + "]";
+}
+
+std::string sensor_tables(const Scene& scene, const NewPlaces& places) {
+  if (!scene.sensors.empty()) return "# The model has sensors of its own.\n\n";
+  std::string text = names_line("No sensors stand in", places.rooms_without);
+  const std::string mark = places.grid ? "" : "# ";
+  const FloorGrid grid = places.grid.value_or(FloorGrid{"work plane", "FLOOR", {}, 0.8, {}, {}, {}, 0});
+  if (!places.grid) text += "# No floor has a closed room above it. A grid over a group of faces would be:\n";
+  text += mark + "[[sensors]]\n" + mark + "name = " + toml_text(grid.name) + '\n' + mark +
+          (grid.rooms.empty() ? "floor = " + toml_text(grid.group) : "room = " + rooms_text(grid)) + '\n' + mark +
+          "height = " + shortest(grid.height) + "      # metres above the floor\n" +
+          "# spacing = 0.5   # metres; EN 12464-1 by the size of the room unless stated\n" + mark +
+          (grid.rooms.empty() ? "from_walls = 0.5\n\n" : "# from_walls = 0.5\n\n");
+  return text;
+}
+
+std::string camera_tables(const std::vector<Camera>& cameras) {
+  std::ostringstream text;
+  if (!cameras.empty()) text << "# Views for --view NAME, from inside the rooms with the largest windows or floors.\n";
+  for (const Camera& camera : cameras) {
+    text << "[[camera]]\nname = " << toml_text(camera.name) << "\neye = " << toml_text(camera.eye)
+         << "\ntarget = " << toml_text(camera.target) << "\nfield_of_view = " << shortest(camera.vertical_field_of_view)
+         << "  # degrees, upright\n\n";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<NamedFloor> named_floors(const Scene& scene) {
+  return scene.rooms.empty() ? floors_of_groups(scene) : floors_of_rooms(scene);
+}
+
+NewLight new_light(const Scene& scene) {
+  if (has_lamp(scene)) return {};
+  const std::optional<Solid> hull = sealed_hull(scene);
+  if (!hull || !is_room(scene, *hull)) return {};
+  NewLight light = lamps_in_rooms(scene);
+  if (!light.lamps.empty()) return light;
+  const std::optional<Point> lamp = place_under_ceiling(scene, *hull);
+  return {true, lamp ? std::vector<Point>{*lamp} : std::vector<Point>{}, {}};
+}
+
+Scene with_new_light(Scene scene, const NewLight& light) {
+  if (has_lamp(scene)) return scene;
+  for (const Point& lamp : light.lamps) {
+    scene.luminaires.emplace_back();
+    scene.luminaires.back().position = lamp;
+  }
+  if (!light.is_sealed) scene.sky = Sky{};
+  return scene;
+}
+
+std::string new_scene_file(const Scene& scene, const NewLight& light, const NewPlaces& places,
+                           const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
+                           const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
+       << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
+       << " -o result.vtp --json result.json --picture result.png\n\n"
+       << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";
+  text << model_tables(scene, models, metres_per_unit, file) << material_tables(scene) << light_tables(scene, light)
+       << sensor_tables(scene, places) << camera_tables(places.cameras);
+  return text.str();
+}
+
+}  // namespace patchlight

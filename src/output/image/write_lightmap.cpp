@@ -1,0 +1,404 @@
+#include "output/image/write_lightmap.h"
+
+#include "patchlight/base/error.h"
+#include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_image.h"
+#include "patchlight/render/image.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/simulate.h"
+
+#include "output/file/whole_folder.h"
+#include "output/file/write_bytes.h"
+#include "output/image/lightmap_picture.h"
+#include "output/image/png_bytes.h"
+#include "output/image/write_exr.h"
+#include "output/mesh/append_bytes.h"
+#include "output/mesh/glb_file.h"
+#include "output/report/json_array.h"
+#include "render/lightmap_charts.h"
+#include "render/tone_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace patchlight {
+namespace {
+
+using GltfJson = nlohmann::ordered_json;
+
+// A corner of patches of one chart or, without a place in the map, of one clear patch.
+struct ChartVertex {
+  Point position;
+  Vector normal;
+  Eigen::Vector2d in_picture;
+  Eigen::Vector2d in_map;
+};
+
+// All patches as triangles, by material.
+struct ChartTriangles {
+  std::vector<ChartVertex> vertices;
+  std::vector<std::vector<std::uint32_t>> of_material;  // three vertices each
+};
+
+Eigen::Vector2d place_in_picture(const Scene& scene, const PatchMesh& mesh, PatchIndex patch, const Point& point,
+                                 const Eigen::Vector2d& in_metres) {
+  const TextureMap* map = texture_map_on(scene, scene.polygons[mesh.polygon[patch]], mesh.side[patch]);
+  return map ? Eigen::Vector2d(map->linear * point + map->offset) : in_metres;
+}
+
+void append_patch(std::vector<std::uint32_t>& triangles, const std::array<std::uint32_t, 4>& corners) {
+  const auto& [a, b, c, d] = corners;
+  triangles.insert(triangles.end(), {a, b, c});
+  if (c != d) triangles.insert(triangles.end(), {a, c, d});
+}
+
+// Vertices are shared within a chart; of a picture's places the first polygon's counts, which those beside it go on.
+ChartTriangles chart_triangles(const Scene& scene, const PatchMesh& mesh, const Lightmap& map) {
+  ChartTriangles all;
+  all.of_material.resize(scene.materials.size());
+  std::vector<std::uint8_t> in_chart(mesh.size());
+  for (const LightmapChart& chart : map.charts) {
+    std::unordered_map<std::uint64_t, std::uint32_t> known;  // by vertex of the mesh and map of the picture
+    for (const PatchIndex patch : chart.patches) {
+      in_chart[patch] = 1;
+      const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
+      const std::uint32_t picture =
+          mesh.side[patch] == Side::back && polygon.back_material ? polygon.back_texture_map : polygon.texture_map;
+      std::array<std::uint32_t, 4> corners{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t vertex = mesh.corners[patch][k];
+        const auto [place, is_new] =
+            known.try_emplace(std::uint64_t{picture} << 32U | vertex, static_cast<std::uint32_t>(all.vertices.size()));
+        corners[k] = place->second;
+        if (!is_new) continue;
+        const Point& point = mesh.vertices[vertex];
+        const Vector from = point - chart.corner;
+        const Eigen::Vector2d in_metres(chart.right.dot(from), chart.down.dot(from));
+        const Eigen::Vector2d texels =
+            Eigen::Vector2d(chart.left + in_metres.x() / chart.texel[0], chart.top + in_metres.y() / chart.texel[1]);
+        all.vertices.push_back({point,
+                                mesh.normal[patch],
+                                place_in_picture(scene, mesh, patch, point, in_metres),
+                                {texels.x() / map.width, texels.y() / map.height}});
+      }
+      append_patch(all.of_material[mesh.material[patch]], corners);
+    }
+  }
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
+    if (in_chart[patch]) continue;
+    std::array<std::uint32_t, 4> corners{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners[k] = static_cast<std::uint32_t>(all.vertices.size());
+      if (k == 3 && mesh.corners[patch][3] == mesh.corners[patch][2])
+        corners[k] = corners[2];
+      else
+        all.vertices.push_back({mesh.vertices[mesh.corners[patch][k]], mesh.normal[patch], {0, 0}, {0, 0}});
+    }
+    append_patch(all.of_material[mesh.material[patch]], corners);
+  }
+  return all;
+}
+
+// A glTF as it grows.
+class LightmapGlb {
+ public:
+  LightmapGlb(const Scene& scene, const Provenance& provenance);
+
+  void add_vertices(const ChartTriangles& all, bool is_lit);
+  void add_picture(const std::string& png);
+  void add_primitive(const std::vector<std::uint32_t>& corners, GltfJson material);
+  void write(const std::filesystem::path& file, const std::string& extra_key, const GltfJson& extra);
+
+ private:
+  std::size_t view(std::size_t begin, int target);
+  std::size_t add_floats(const std::vector<float>& values, std::size_t each, bool with_bounds);
+
+  const Scene& scene_;
+  Point centre_;
+  std::string bytes_;
+  GltfJson json_, attributes_, primitives_ = GltfJson::array(), materials_ = GltfJson::array();
+  GltfJson accessors_ = GltfJson::array(), views_ = GltfJson::array();
+};
+
+LightmapGlb::LightmapGlb(const Scene& scene, const Provenance& provenance)
+    : scene_(scene), centre_(bounds(scene).center()) {
+  json_["asset"] = {{"version", "2.0"},
+                    {"generator", std::string("patchlight ") + version()},
+                    {"extras", {{"exposure", provenance.exposure}, {"command_line", provenance.command_line}}}};
+  const Vector place = y_up(centre_, scene);
+  json_["scene"] = 0;
+  json_["scenes"] = GltfJson::array({{{"nodes", GltfJson::array({0})}}});
+  json_["nodes"] =
+      GltfJson::array({{{"mesh", 0}, {"translation", GltfJson::array({place.x(), place.y(), place.z()})}}});
+}
+
+std::size_t LightmapGlb::view(std::size_t begin, int target) {
+  GltfJson json = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}};
+  if (target != 0) json["target"] = target;
+  views_.push_back(std::move(json));
+  bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
+  return views_.size() - 1;
+}
+
+// So many numbers each. Returns the accessor.
+std::size_t LightmapGlb::add_floats(const std::vector<float>& values, std::size_t each, bool with_bounds) {
+  const std::size_t begin = bytes_.size();
+  for (const float value : values) append_bytes(bytes_, value);
+  GltfJson json = {{"bufferView", view(begin, gltf::target_vertices)},
+                   {"componentType", gltf::type_float},
+                   {"count", values.size() / each},
+                   {"type", each == 2 ? "VEC2" : "VEC3"}};
+  if (with_bounds) {
+    std::vector<float> lowest(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(each)), highest = lowest;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      lowest[k % each] = std::min(lowest[k % each], values[k]);
+      highest[k % each] = std::max(highest[k % each], values[k]);
+    }
+    json["min"] = json_array(lowest);
+    json["max"] = json_array(highest);
+  }
+  accessors_.push_back(std::move(json));
+  return accessors_.size() - 1;
+}
+
+void LightmapGlb::add_vertices(const ChartTriangles& all, bool is_lit) {
+  std::vector<float> positions, normals, first, second;
+  const auto append = [](std::vector<float>& to, const auto& vector) {
+    for (Eigen::Index k = 0; k < vector.size(); ++k) to.push_back(static_cast<float>(vector[k]));
+  };
+  for (const ChartVertex& vertex : all.vertices) {
+    append(positions, y_up(vertex.position - centre_, scene_));
+    append(normals, y_up(vertex.normal, scene_));
+    append(first, is_lit ? vertex.in_picture : vertex.in_map);
+    append(second, vertex.in_map);
+  }
+  attributes_["POSITION"] = add_floats(positions, 3, true);
+  if (is_lit) attributes_["NORMAL"] = add_floats(normals, 3, false);
+  attributes_["TEXCOORD_0"] = add_floats(first, 2, false);
+  attributes_["TEXCOORD_1"] = is_lit ? add_floats(second, 2, false) : attributes_["TEXCOORD_0"].get<std::size_t>();
+}
+
+void LightmapGlb::add_picture(const std::string& png) {
+  const std::size_t begin = bytes_.size();
+  bytes_ += png;
+  json_["images"] = GltfJson::array({{{"bufferView", view(begin, 0)}, {"mimeType", "image/png"}}});
+  // Without smaller versions of it, in which charts would mix.
+  json_["samplers"] = GltfJson::array({{{"magFilter", gltf::linear_filter},
+                                        {"minFilter", gltf::linear_filter},
+                                        {"wrapS", gltf::clamp_to_edge},
+                                        {"wrapT", gltf::clamp_to_edge}}});
+  json_["textures"] = GltfJson::array({{{"sampler", 0}, {"source", 0}}});
+}
+
+void LightmapGlb::add_primitive(const std::vector<std::uint32_t>& corners, GltfJson material) {
+  const std::size_t begin = bytes_.size();
+  for (const std::uint32_t corner : corners) append_bytes(bytes_, corner);
+  accessors_.push_back({{"bufferView", view(begin, gltf::target_indices)},
+                        {"componentType", gltf::type_unsigned_int},
+                        {"count", corners.size()},
+                        {"type", "SCALAR"}});
+  primitives_.push_back(
+      {{"attributes", attributes_}, {"indices", accessors_.size() - 1}, {"material", materials_.size()}, {"mode", 4}});
+  materials_.push_back(std::move(material));
+}
+
+void LightmapGlb::write(const std::filesystem::path& file, const std::string& extra_key, const GltfJson& extra) {
+  if (!extra.is_null()) json_["asset"]["extras"][extra_key] = extra;
+  const auto is_unlit = [](const GltfJson& material) { return material.contains("extensions"); };
+  if (std::any_of(materials_.begin(), materials_.end(), is_unlit))
+    json_["extensionsUsed"] = GltfJson::array({"KHR_materials_unlit"});
+  json_["meshes"] = GltfJson::array({{{"primitives", primitives_}}});
+  json_["materials"] = materials_;
+  json_["accessors"] = accessors_;
+  json_["bufferViews"] = views_;
+  json_["buffers"] = GltfJson::array({{{"byteLength", bytes_.size()}}});
+  write_glb_file(file, json_, bytes_);
+}
+
+GltfJson matt_material(const Material& material, const Bands& bands, double opacity) {
+  const std::array<double, 3> colour = linear_rgb(material.reflectance, bands);
+  GltfJson factor = GltfJson::array();
+  for (const double channel : colour) factor.push_back(std::clamp(channel, 0.0, 1.0));
+  factor.push_back(opacity);
+  GltfJson json = {
+      {"name", material.name},
+      {"pbrMetallicRoughness", {{"baseColorFactor", factor}, {"metallicFactor", 0}, {"roughnessFactor", 1}}}};
+  if (opacity < 1) json["alphaMode"] = "BLEND";
+  return json;
+}
+
+// Glass is drawn so thick that it is seen to be there.
+GltfJson glass(const Material& material, const Bands& bands) {
+  GltfJson json = matt_material(material, bands, std::clamp(1 - material.transmittance.mean(), 0.1, 0.9));
+  for (std::size_t channel = 0; channel < 3; ++channel) json["pbrMetallicRoughness"]["baseColorFactor"][channel] = 0.8;
+  return json;
+}
+
+bool is_clear(const Material& material) {
+  return material.transmittance.size() > 0 && (material.transmittance > 0).any();
+}
+
+// Writes the patches as binary glTF 2.0 for engines that light them by a lightmap: the materials' reflectances as base
+// colours, normals, TEXCOORD_1 the place in the lightmap and TEXCOORD_0 that in the material's picture, or metres
+// along the face where it has none. One-sided triangles, y up, positions as write_glb() has them. Throws OutputError.
+void write_lightmap_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+                        const Lightmap& map, const Provenance& provenance) {
+  const ChartTriangles all = chart_triangles(scene, simulation.mesh, map);
+  LightmapGlb glb(scene, provenance);
+  glb.add_vertices(all, true);
+  for (std::size_t m = 0; m < all.of_material.size(); ++m) {
+    if (all.of_material[m].empty()) continue;
+    const Material& material = scene.materials[m];
+    glb.add_primitive(all.of_material[m], is_clear(material) ? glass(material, bands_of(scene))
+                                                             : matt_material(material, bands_of(scene), 1));
+  }
+  glb.write(file, "lightmap", {{"texCoord", 1}, {"file", "irradiance.exr"}, {"unit", "W/m^2"}});
+}
+
+// The same with the light itself as colours for viewers: unlit (KHR_materials_unlit), the map's radiance exposed and
+// embedded as PNG, its places in TEXCOORD_0 and in TEXCOORD_1. Clear faces are drawn as thin glass. \throws
+// OutputError.
+void write_baked_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
+                     const Lightmap& map, const Provenance& provenance) {
+  const ChartTriangles all = chart_triangles(scene, simulation.mesh, map);
+  std::vector<std::uint32_t> light;
+  LightmapGlb glb(scene, provenance);
+  glb.add_vertices(all, false);
+  const std::string png = png_bytes(picture_of_map(map, map.radiance, provenance.exposure, bands_of(scene)));
+  if (png.empty()) throw OutputError(file.string(), "the light cannot be encoded as PNG");
+  glb.add_picture(png);
+  const GltfJson unlit = {{"KHR_materials_unlit", GltfJson::object()}};
+  for (std::size_t m = 0; m < all.of_material.size(); ++m) {
+    const Material& material = scene.materials[m];
+    if (all.of_material[m].empty()) continue;
+    if (!is_clear(material)) {
+      light.insert(light.end(), all.of_material[m].begin(), all.of_material[m].end());
+      continue;
+    }
+    GltfJson pane = glass(material, bands_of(scene));
+    pane["extensions"] = unlit;
+    glb.add_primitive(all.of_material[m], std::move(pane));
+  }
+  if (!light.empty())
+    glb.add_primitive(light, {{"name", "light"},
+                              {"pbrMetallicRoughness",
+                               {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                              {"extensions", unlit}});
+  glb.write(file, "", nullptr);
+}
+
+namespace fs = std::filesystem;
+
+constexpr const char* lightmap_kind = "patchlight lightmap";
+constexpr const char* lightmap_facts_file = "lightmap.json";
+constexpr const char* lit_file = "lightmap.glb";
+constexpr const char* baked_file = "baked.glb";
+constexpr std::array<const char*, 3> light_names = {"irradiance", "direct", "indirect"};
+
+bool is_earlier_lightmap(const fs::path& folder) {
+  std::vector<std::string> names = {lightmap_facts_file, lit_file, baked_file};
+  for (const std::string light : light_names) {
+    names.push_back(light + ".exr");
+    names.push_back(light + ".png");
+  }
+  return holds_result(folder, {lightmap_facts_file, lightmap_kind, names});
+}
+
+std::vector<ExrChannel> rgb_channels(const TexelField& light, const Bands& bands) {
+  const auto count = static_cast<std::size_t>(light.rows());
+  std::vector<ExrChannel> channels;
+  for (const char* name : {"R", "G", "B"}) channels.push_back({name, std::vector<float>(count)});
+  for (std::size_t texel = 0; texel < count; ++texel) {
+    const Spectrum here = light.row(static_cast<Eigen::Index>(texel)).cast<double>();
+    const std::array<double, 3> rgb = linear_rgb(here, bands);
+    for (std::size_t c = 0; c < 3; ++c) channels[c].values[texel] = static_cast<float>(rgb[c]);
+  }
+  return channels;
+}
+
+// What texels on surfaces have.
+Field on_surfaces(const Lightmap& map, const TexelField& light) {
+  const auto count =
+      static_cast<Eigen::Index>(map.patch.size()) - std::count(map.patch.begin(), map.patch.end(), no_patch);
+  Field rows(count, light.cols());
+  Eigen::Index next = 0;
+  for (std::size_t texel = 0; texel < map.patch.size(); ++texel) {
+    if (map.patch[texel] != no_patch) rows.row(next++) = light.row(static_cast<Eigen::Index>(texel)).cast<double>();
+  }
+  return rows;
+}
+
+double exposure_of(const Lightmap& map, const TexelField& light, const Bands& bands) {
+  const Field rows = on_surfaces(map, light);
+  return exposure_for(rows, Eigen::VectorXd::Ones(rows.rows()), bands);
+}
+
+nlohmann::ordered_json facts_of(const Lightmap& map, const Scene& scene, const Provenance& provenance,
+                                double png_exposure) {
+  nlohmann::ordered_json json;
+  json["kind"] = lightmap_kind;
+  json["version"] = version();
+  json["command_line"] = provenance.command_line;
+  json["scene"] = scene.file;
+  json["scene_hash"] = provenance.scene_hash;
+  json["width"] = map.width;
+  json["height"] = map.height;
+  json["texel_m"] = map.texel;
+  json["charts"] = map.charts.size();
+  json["padding_texels"] = lightmap_padding;
+  json["texels_on_surfaces"] =
+      static_cast<std::int64_t>(map.patch.size()) - std::count(map.patch.begin(), map.patch.end(), no_patch);
+  json["memory_bytes"] = bytes_of(map);
+  json["exr"] = {{"unit", "W/m^2"}, {"channels", json_array(std::array{"R", "G", "B"})}, {"primaries", "Rec. 709"}};
+  // Before highlights are rolled off, a PNG shows sRGB of exposure H / pi.
+  json["png_exposure_of_white"] = png_exposure;
+  json["baked_exposure"] = provenance.exposure;
+  json["indirect_error_channel"] = "error.Y of indirect.exr, lx";
+  return json;
+}
+
+}  // namespace
+
+std::size_t bytes_of(const Lightmap& map) {
+  const auto values =
+      static_cast<std::size_t>(map.direct.size() + map.indirect.size() + map.radiance.size() + map.error.size());
+  return values * sizeof(float) + map.patch.size() * sizeof(PatchIndex);
+}
+
+void write_lightmap(const fs::path& folder, const Scene& scene, const Simulation& simulation, const Lightmap& map,
+                    const Provenance& provenance) {
+  const Bands bands = bands_of(scene);
+  Provenance baked = provenance;
+  baked.exposure = exposure_of(map, map.radiance, bands);
+  const TexelField total = map.direct + map.indirect;
+  const double exposure = exposure_of(map, total, bands);  // of irradiance, which is pi times the radiance of white
+  write_whole_folder(folder, is_earlier_lightmap, [&](const fs::path& in) {
+    const std::array<const TexelField*, 3> lights = {&total, &map.direct, &map.indirect};
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+      const std::string name = light_names[k];
+      std::vector<ExrChannel> channels = rgb_channels(*lights[k], bands);
+      if (lights[k] == &map.indirect) channels.push_back({"error.Y", {map.error.begin(), map.error.end()}});
+      write_exr(in / (name + ".exr"), map.width, map.height, channels, name + ", W/m^2");
+      write_png(in / (name + ".png"), picture_of_map(map, *lights[k], exposure, bands));
+    }
+    write_lightmap_glb(in / lit_file, scene, simulation, map, baked);
+    write_baked_glb(in / baked_file, scene, simulation, map, baked);
+    write_bytes(in / lightmap_facts_file,
+                facts_of(map, scene, baked, exposure * std::numbers::pi)
+                        .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+                    "\n");
+  });
+}
+
+void check_lightmap_writable(const fs::path& folder) { check_folder_writable(folder, is_earlier_lightmap); }
+
+}  // namespace patchlight

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "output/plot/write_plot.h"
+
+#include <string>
+#include <vector>
+
+namespace patchlight {
+
+/// What an axis shows; lower < upper, on a logarithmic axis 0 < lower.
+struct AxisRange {
+  double lower = 0;
+  double upper = 1;
+};
+
+/// A mark on an axis. Its label is `text` with `exponent` raised behind it; without a text it has none.
+struct Tick {
+  double value = 0;
+  std::string text;
+  std::string exponent;
+};
+
+/// Whether an axis can show the value, see write_plot().
+bool on_axis(double value, Scale scale);
+
+/// A range that holds all values, which must be on_axis(). On a linear axis the ends are multiples of the step of at
+/// most `most` ticks, on a logarithmic one they are a little outside. Without values, or when all are equal, some
+/// range.
+AxisRange axis_range(const std::vector<double>& values, Scale scale, int most);
+
+/// Ticks within the range, ascending; about `most` (>= 2) have labels. Linear: multiples of 1, 2 or 5 times a power of
+/// ten. Logarithmic: powers of ten; 1, 2 and 5 times these where the range holds one or two powers, linear ticks where
+/// it is too short for that.
+std::vector<Tick> axis_ticks(const AxisRange& range, Scale scale, int most);
+
+/// Where the value stands: 0 is the lower end of the range, 1 the upper.
+double place_on_axis(double value, const AxisRange& range, Scale scale);
+
+}  // namespace patchlight

@@ -1,0 +1,133 @@
+#include "output/vtk/vtk_polygons.h"
+
+#include "patchlight/base/error.h"
+
+#include "output/file/whole_file.h"
+
+#include <algorithm>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkCommand.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+namespace patchlight {
+namespace {
+
+// The first error that VTK reports, kept instead of printed.
+void keep_first_error(vtkObject*, unsigned long, void* message, void* text) {
+  auto& kept = *static_cast<std::string*>(message);
+  if (kept.empty() && text != nullptr) kept = static_cast<const char*>(text);
+}
+
+void write_data(const std::filesystem::path& file, vtkDataSet& data, vtkXMLWriter& writer) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::string error;
+    const vtkNew<vtkCallbackCommand> on_error;
+    on_error->SetCallback(keep_first_error);
+    on_error->SetClientData(&error);
+    writer.AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, on_error);
+    writer.SetInputData(&data);
+    writer.SetFileName(temporary.c_str());
+    writer.SetDataModeToAppended();
+    writer.SetHeaderTypeToUInt64();
+    const bool written = writer.Write() != 0 && writer.GetErrorCode() == vtkErrorCode::NoError && error.empty();
+    if (!written) throw OutputError(file.string(), "cannot be written; is the disk full?");
+  });
+}
+
+// Without facts that are texts or empty: meshio, which reads such grids, takes neither.
+Pointer<vtkUnstructuredGrid> grid_of(vtkPolyData& polygons) {
+  auto grid = Pointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(polygons.GetPoints());
+  vtkCellArray& cells = *polygons.GetPolys();
+  const vtkNew<vtkUnsignedCharArray> types;
+  for (vtkIdType k = 0; k < cells.GetNumberOfCells(); ++k)
+    types->InsertNextValue(cells.GetCellSize(k) == 3 ? VTK_TRIANGLE : VTK_QUAD);
+  grid->SetCells(types, &cells);
+  grid->GetCellData()->ShallowCopy(polygons.GetCellData());
+  grid->GetPointData()->ShallowCopy(polygons.GetPointData());
+  vtkFieldData& facts = *polygons.GetFieldData();
+  for (int k = 0; k < facts.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const numbers = facts.GetArray(k);
+    if (numbers != nullptr && numbers->GetNumberOfTuples() > 0) grid->GetFieldData()->AddArray(numbers);
+  }
+  return grid;
+}
+
+}  // namespace
+
+Pointer<vtkPolyData> polygons_of(const PatchMesh& mesh) {
+  const vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
+  for (std::size_t k = 0; k < mesh.vertices.size(); ++k) {
+    points->SetPoint(static_cast<vtkIdType>(k), mesh.vertices[k].data());
+  }
+  const vtkNew<vtkCellArray> cells;
+  for (const auto& corners : mesh.corners) {
+    const bool triangle = corners[2] == corners[3];
+    cells->InsertNextCell(triangle ? 3 : 4);
+    for (std::size_t k = 0; k < (triangle ? 3U : 4U); ++k) cells->InsertCellPoint(corners[k]);
+  }
+  auto polygons = Pointer<vtkPolyData>::New();
+  polygons->SetPoints(points);
+  polygons->SetPolys(cells);
+  return polygons;
+}
+
+Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
+  auto array = Pointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(static_cast<int>(values.cols()));
+  array->SetNumberOfTuples(values.rows());
+  float* out = array->GetPointer(0);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
+  }
+  return array;
+}
+
+Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {
+  auto array = Pointer<vtkUnsignedCharArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  std::uint8_t* out = array->GetPointer(0);
+  for (const auto& value : values) out = std::copy(value.begin(), value.end(), out);
+  return array;
+}
+
+Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values) {
+  auto array = Pointer<vtkStringArray>::New();
+  array->SetName(name.c_str());
+  for (const std::string& value : values) array->InsertNextValue(value);
+  return array;
+}
+
+void write_polygons(const std::filesystem::path& file, vtkPolyData& polygons) {
+  const vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetCompressorTypeToLZ4();
+  writer->EncodeAppendedDataOff();
+  write_data(file, polygons, *writer);
+}
+
+void write_grid(const std::filesystem::path& file, vtkPolyData& polygons) {
+  const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetCompressorTypeToZLib();
+  // Bytes as they are make no well-formed XML, and meshio takes one array's for another's in one of seven files.
+  writer->EncodeAppendedDataOn();
+  write_data(file, *grid_of(polygons), *writer);
+}
+
+}  // namespace patchlight
