@@ -27,7 +27,7 @@ def row(tool, out, words):
         return f"| {model.name} | refused: {done.stderr.strip().splitlines()[-1]} |"
     report = json.loads(names["--json"].read_text())
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    error = next((line for line in done.stdout.splitlines() if "error of the patches" in line), "no error stated")
+    error = next((line for line in done.stdout.splitlines() if line.startswith("estimated error")), "no error stated")
     return (f"| {model.name} {shlex.join(options)} | {report['input']['polygons']} | {report['mesh']['patches']} | "
             f"{seconds:.0f} | {after.ru_maxrss / 1e6:.2f} | {error} |")
 

@@ -162,7 +162,7 @@ bool take(const Rows& rows, PatchRange columns, ExchangeAreas& S) {
       std::ostringstream text;
       text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
            << " where A_j F_ji = " << other
-           << "; expected equal numbers, finite and not negative. Compute the form factors again";
+           << "; expected equal numbers, finite and not negative\nhint: compute the form factors again";
       throw InputError(file.string(), text.str());
     }
   }
@@ -230,9 +230,9 @@ void require_same_geometry(const std::filesystem::path& folder, const FormFactor
        << " m and mesh.sides=" << name_of(info.sides) << "; expected those of " << mesh.size()
        << " patches with geometry " << wanted.substr(0, 12)
        << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
-       << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
-          "mesh.patches; with mesh.sides=auto "
-          "the lamps decide, too. Or compute them again: patchlight form-factors MODEL -o "
+       << "\nhint: give the same model, lamps, read.metres_per_unit and mesh.sides, without mesh.max_edge and "
+          "mesh.patches"
+          "\nhint: or compute them again: patchlight form-factors MODEL -o "
        << folder.string();
   throw InputError(folder.string(), text.str());
 }
@@ -252,7 +252,7 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
   require_same_geometry(folder, info, mesh);
   if (info.format != MatrixFormat::npy) {
     throw InputError(folder.string(),
-                     "found F.mtx; expected F.npy. Compute the form factors again, with the matrix as npy");
+                     "found F.mtx; expected F.npy\nhint: compute the form factors again with --matrix npy");
   }
   const std::size_t size = info.patches;
   auto [area, lost] = read_shares(folder, info);

@@ -36,7 +36,7 @@ void require_raw_row_sums(const std::filesystem::path& file, const Eigen::Vector
     if (sums[i] >= 0 && sums[i] <= most[i]) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << " before closure; expected 0 to "
-         << most[i] << ". Compute the form factors again";
+         << most[i] << "\nhint: compute the form factors again";
     throw InputError(file.string(), text.str());
   }
 }
@@ -72,7 +72,7 @@ void require_row_sums(const std::filesystem::path& folder, const FormFactorInfo&
     if (sums[i] >= range.low && sums[i] <= range.high) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << "; expected " << range.low << " to "
-         << range.high << ", as raw_row_sum.npy and lost_share.npy say. Compute the form factors again";
+         << range.high << "\nhint: compute the form factors again";
     throw InputError((folder / file_name::dense).string(), text.str());
   }
 }

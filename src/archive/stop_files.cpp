@@ -47,7 +47,8 @@ PatchIndex patch_of(std::int32_t column) {
 
 [[noreturn]] void refuse_stops(const std::filesystem::path& file, const std::string& found,
                                const std::string& expected) {
-  throw InputError(file.string(), "found " + found + "; expected " + expected + ". Compute the form factors again");
+  throw InputError(file.string(),
+                   "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
 
 // A ray is in one row alone.

@@ -67,7 +67,8 @@ std::string as_tinygltf_takes_it(const std::string& text) {
 }
 
 [[noreturn]] void refuse_packed(const std::string& file, const std::string& what, std::size_t index) {
-  throw InputError(file, what + " " + std::to_string(index) + " is compressed, and damaged; export the model again");
+  throw InputError(file,
+                   what + " " + std::to_string(index) + " is compressed, and damaged\nhint: export the model again");
 }
 
 std::size_t count_in(const tinygltf::Value& table, const char* key) {

@@ -76,10 +76,9 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
   const bool is_y = std::abs(scene.up.y()) > 0.5;
   scene.problems.push_back({ProblemKind::guessed_up,
                             1,
-                            std::string("no file states the upright axis, and ") + part + " depends on it; " +
-                                (is_y ? "y" : "z") +
-                                " is a guess by the areas of faces. Give read.up=" + (is_y ? "y" : "z") +
-                                " if it is right, else read.up=" + (is_y ? "z" : "y") + "; a scene file has the key up",
+                            std::string("no file states the vertical axis, and ") + part + " depends on it; " +
+                                (is_y ? "y" : "z") + " is a guess by the areas of faces\nhint: read.up=" +
+                                (is_y ? "y" : "z") + " if it is right, else read.up=" + (is_y ? "z" : "y"),
                             {}});
   return scene;
 }
@@ -105,7 +104,7 @@ SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& optio
     return read_scene_file(file, options.confine);
   }
   throw InputError("read.metres_per_unit",
-                   "a scene file states its units itself, with the keys unit; leave it out for " + file.string());
+                   "cannot be used with a scene file, which states its units with the key unit: " + file.string());
 }
 
 FileModel read_entry(const ModelEntry& model, const std::filesystem::path& confine, RadianceModifiers known) {

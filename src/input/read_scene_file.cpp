@@ -34,7 +34,7 @@ SceneFile read_scene_file(const std::filesystem::path& file, const std::filesyst
   }
   if (const TomlValue* const factor = find(root, "maintenance_factor")) {
     scene.maintenance_factor = positive(*factor);
-    if (*scene.maintenance_factor > 1) refuse(*factor, "a number above 0 and up to 1, as 0.8");
+    if (*scene.maintenance_factor > 1) refuse(*factor, "a number above 0 and up to 1, e.g. 0.8");
   }
   scene.bands = bands_asked(root);
   std::vector<std::string> texts = {text};

@@ -12,7 +12,7 @@ namespace {
 void require_no(const TomlValue& table, const char* key, Projection projection) {
   const TomlValue* const value = find(table, key);
   if (value == nullptr) return;
-  refuse(*value, std::string("none with the projection '") + name_of(projection) + "'; leave it out");
+  refuse(*value, std::string("none with the projection '") + name_of(projection) + "'\nhint: leave it out");
 }
 
 // With what its picture shows: an angle, or a height.
