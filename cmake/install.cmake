@@ -14,13 +14,23 @@ endfunction()
 string(TIMESTAMP patchlight_packed "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(cmake/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
 patchlight_compress(${PROJECT_BINARY_DIR}/changelog ${PROJECT_BINARY_DIR}/changelog.gz)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/patchlight.1)
-patchlight_compress(${PROJECT_SOURCE_DIR}/docs/patchlight.1 ${PROJECT_BINARY_DIR}/patchlight.1.gz)
+file(GLOB patchlight_manuals CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/man/*.1)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${patchlight_manuals})
+set(patchlight_compressed_manuals)
+foreach(manual IN LISTS patchlight_manuals)
+  get_filename_component(name ${manual} NAME)
+  patchlight_compress(${manual} ${PROJECT_BINARY_DIR}/${name}.gz)
+  list(APPEND patchlight_compressed_manuals ${PROJECT_BINARY_DIR}/${name}.gz)
+endforeach()
 
 set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
 install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
 install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
-install(FILES ${PROJECT_BINARY_DIR}/patchlight.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+install(FILES ${patchlight_compressed_manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+# The pages that `patchlight help TOPIC` prints.
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight/md COMPONENT tool
+        FILES_MATCHING PATTERN *.md PATTERN benchmarks EXCLUDE PATTERN developer EXCLUDE PATTERN figures EXCLUDE
+        PATTERN man EXCLUDE PATTERN notebooks EXCLUDE)
 # The IFC reader's script with web-ifc, of which Node.js needs three files, for all that reads scenes.
 set(patchlight_ifc ${PROJECT_SOURCE_DIR}/src/input/ifc)
 set(patchlight_ifc_destination ${CMAKE_INSTALL_DATADIR}/patchlight/ifc)

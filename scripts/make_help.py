@@ -1,95 +1,242 @@
 #!/usr/bin/env python3
-"""Writes docs/command_line.md, the manual page docs/patchlight.1 and the completion for bash, docs/patchlight.bash, from
-what the tool says about itself.
+"""Writes the pages of docs/reference/cli, the manual pages of docs/man and the completion for bash, docs/patchlight.bash,
+from the help of the tool.
 
 usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/make_help.py [--check]
---check writes nothing and fails when the files are not up to date.
+--check writes nothing. It fails if a file is not up to date, or if a manual page or a reference page lacks an option.
 """
+import dataclasses
 import os
 import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
-ENTRY = re.compile(r"^ {2}(?=\S)", re.MULTILINE)  # an option or command begins two columns in
+CLI = DOCS / "reference" / "cli"
+MAN = DOCS / "man"
+SHARED = 3  # an option with the same text in so many commands stands on common-options.md
+
+EXIT_STATUS = [
+    ("0", "Success."),
+    ("1", "Usage: the command line is not valid. Nothing was read or written."),
+    ("2", "Input: a model or another input file cannot be used. Nothing was written."),
+    ("3", "The solver did not converge, or the requested accuracy was not reached. All results were written."),
+    ("4", "Not enough memory. patchlight estimates the need before the run starts; nothing was written."),
+    ("5", "A check failed: `patchlight crosscheck` or `patchlight selftest` found a deviation beyond the error bars."),
+    ("6", "Output: a result cannot be written."),
+    ("70", "Internal error, a defect of patchlight. Please report it."),
+    ("128 + n", "Signal n stopped the run, e.g. 130 for Ctrl-C. `patchlight solve` and `patchlight relight` write the "
+                "results so far, unless `--discard` is given."),
+]
+
+FILES = {
+    "init": [("SCENE.toml", "The scene file that is created.")],
+    "solve": [("NAME.irradiance.csv", "Readings of the sensors, beside the result or in the current folder, if no "
+                                      "--points-output is given.")],
+    "relight": [("FOLDER", "Form factors and scene, from patchlight form-factors.")],
+    "form-factors": [("FOLDER/info.json", "The facts of the form factors: options, sizes and errors."),
+                     ("FOLDER/scene.json", "The scene, which patchlight relight reads.")],
+    "compare-solvers": [("FOLDER/compare.csv, FOLDER/compare.json", "The table of all solvers, and all facts.")],
+    "convergence": [("FOLDER/study.csv, FOLDER/study.json", "The table of all runs, and all facts.")],
+}
+
+SEE_ALSO = {
+    "check": ["init", "plan"], "init": ["check", "solve"], "solve": ["plan", "render", "crosscheck"],
+    "render": ["solve"], "plan": ["solve"], "crosscheck": ["solve", "selftest"], "relight": ["form-factors", "solve"],
+    "form-factors": ["relight"], "compare-solvers": ["convergence"], "convergence": ["compare-solvers"],
+    "selftest": ["crosscheck"],
+}
 
 
-def help_of(*command):
+@dataclasses.dataclass(frozen=True)
+class Option:
+    head: str  # "-o, --output FILE"
+    help: str
+    more: str
+    group: str
+
+    def names(self):
+        return re.findall(r"(?:^|, )(--?[a-z][\w-]*)", self.head) or [self.head]
+
+    def value(self):
+        return re.sub(r"^(-\w, )?--?[\w-]+ ?", "", self.head)
+
+
+@dataclasses.dataclass
+class Command:
+    name: str
+    summary: str
+    usage: str
+    about: str
+    examples: list  # pairs of a meaning and a line
+    options: list
+
+
+def run(*words):
     tool = os.environ["PATCHLIGHT_TOOL"]
-    return subprocess.run([tool, *command, "--help"], check=True, capture_output=True, text=True).stdout.rstrip()
+    return subprocess.run([tool, *words], check=True, capture_output=True, text=True).stdout
 
 
-def section(text, title):
-    """The entries of a section of a help text: pairs of what is typed and what it means."""
-    found = re.search(rf"^{title}:\n((?:  .*\n?)+)", text, re.MULTILINE)
-    for entry in ENTRY.split(found[1])[1:] if found else []:
-        head, *rest = entry.splitlines()
-        typed, *meaning = re.split(r"\s{2,}", head.strip(), maxsplit=1)
-        yield typed, " ".join(meaning + [line.strip() for line in rest])
+def groups_of_commands():
+    """{"Start": [("check", "Report ..."), ...], ...} from patchlight --help."""
+    found = {}
+    for title, lines in re.findall(r"^([A-Z]\w+):\n((?:  .*\n)+)", run("--help"), re.MULTILINE):
+        if title != "Help":
+            found[title] = [tuple(line.strip().split(None, 1)) for line in lines.splitlines()]
+    return found
 
 
-def description(text):
-    """What stands before the line of usage."""
-    return " ".join(text.split("Usage:")[0].split())
+def command_of(name):
+    """A command from its --help."""
+    summary, usage, about, *parts = run(name, "--help").rstrip().split("\n\n")
+    parts = parts[:-1]  # the exit status
+    comments = [line.strip() for line in parts.pop(0).splitlines()[1:]]
+    options = []
+    for part in parts:
+        title, *lines = part.splitlines()
+        for entry in re.split(r"^  (?=\S)", "\n".join(lines), flags=re.MULTILINE)[1:]:
+            head, short, *more = entry.splitlines()
+            options.append(Option(head, short.strip(), " ".join(line.strip() for line in more), title.rstrip(":")))
+    return Command(name, summary, usage.removeprefix("Usage: "), " ".join(about.split()),
+                   [(comments[k].lstrip("# "), comments[k + 1]) for k in range(0, len(comments), 2)], options)
 
 
-def usage(text):
-    return re.search(r"^Usage: (.*)$", text, re.MULTILINE)[1]
+def in_groups(options):
+    found = {}
+    for option in options:
+        found.setdefault(option.group, []).append(option)
+    return found
 
 
-def commands(text):
-    return [name for name, _ in section(text, "Subcommands")]
+# Markdown
+
+def prose(text):
+    """Text with options as code and nothing that Markdown takes for emphasis."""
+    pieces = re.split(r"(`[^`]*`)", text)
+    for k in range(0, len(pieces), 2):
+        pieces[k] = re.sub(r"(?<![\w-])(--[a-z][\w-]*|-[a-z](?![\w-]))", r"`\1`", pieces[k].replace("*", r"\*"))
+    return "".join(pieces)
 
 
-def markdown(texts):
-    parts = ["# Command line\n\nWhat `patchlight --help` says. `scripts/make_help.py` writes this page.\n"]
-    for words, text in texts.items():
-        parts.append(f"## `{' '.join(('patchlight',) + words)}`\n\n```text\n{text}\n```\n")
-    return "\n".join(parts)
+def filled(text, first="", rest=""):
+    return textwrap.fill(text, 118, initial_indent=first, subsequent_indent=rest, break_long_words=False,
+                         break_on_hyphens=False)
 
 
-def roff(text):
-    """Text in which nothing is a command of the formatter."""
-    escaped = text.replace("\\", "\\e").replace("-", "\\-")
-    return re.sub(r"^(?=[.'])", r"\\&", escaped, flags=re.MULTILINE)
+def entry(option):
+    more = " " + prose(option.more) if option.more else ""
+    return filled(f"**`{option.head}`**: {prose(option.help)}.{more}", "- ", "  ")
 
 
-def entries(pairs):
-    return [f".TP\n\\fB{roff(typed)}\\fR\n{roff(meaning)}" for typed, meaning in pairs]
+def entries(options):
+    return "\n".join(entry(option) for option in options) + "\n"
 
 
-def manual(texts):
-    """A page for man(1)."""
-    top = texts[()]
-    about = description(top).split(": ", 1)[1]
-    exits = re.search(r"Exit codes: (.*)\Z", top, re.DOTALL)[1].rstrip(".").replace("\n", " ")
-    lines = [".TH PATCHLIGHT 1", ".SH NAME", roff(f"patchlight - {about}"), ".SH SYNOPSIS"]
-    for words, text in texts.items():
-        if words or len(texts) == 1:
-            lines += [roff(usage(text)), ".br"]
-    lines += [".SH COMMANDS"] + entries(section(top, "Subcommands"))
-    for words, text in texts.items():
-        name = " ".join(words).upper()
-        lines += [f".SH {name + ' ' if name else ''}OPTIONS"]
-        lines += entries(section(text, "Positionals")) + entries(section(text, "Options"))
-    lines += [".SH EXIT STATUS"]
-    codes = [code.split(" ", 1) for code in re.split(r", (?=\d)", exits)]
-    lines += entries(codes) + [".SH SEE ALSO", "paraview(1)"]
+def anchor(title):
+    return title.lower().replace(" ", "-")
+
+
+def page_of(command, shared):
+    own = in_groups(option for option in command.options if option not in shared)
+    common = in_groups(option for option in command.options if option in shared)
+    lines = [f"# patchlight {command.name}\n", command.summary + "\n", f"```sh\n{command.usage}\n```\n",
+             filled(prose(command.about)) + "\n", "## Examples\n", "```sh"]
+    for meaning, line in command.examples:
+        lines += [f"# {meaning}", line]
+    lines += ["```\n", "## Options\n"]
+    for title, options in own.items():
+        lines += [f"### {title}\n", entries(options)]
+    if common:
+        lines += ["## Options in common with other commands\n"]
+        for title, options in common.items():
+            names = ", ".join(f"`{option.names()[-1]}`" for option in options)
+            lines.append(filled(f"[{title}](common-options.md#{anchor(title)}): {names}", "- ", "  "))
+        lines.append("")
+    lines.append("The command ends with one of these codes: [exit status](exit-status.md).")
     return "\n".join(lines) + "\n"
 
 
-OPTION = re.compile(r"^  ((?:-\w,)?--[\w-]+)(?: (\S+))?", re.MULTILINE)
+def common_page(commands, shared):
+    lines = ["# Common options\n", "Options with the same meaning in three or more commands. The page of each command lists "
+             "the ones that it takes.\n"]
+    ordered = []
+    for command in commands:
+        ordered += [option for option in command.options if option in shared and option not in ordered]
+    for title, options in in_groups(ordered).items():
+        lines += [f"## {title}\n", entries(options)]
+    return "\n".join(lines).rstrip() + "\n"
 
 
-def options(text):
-    """The options of a help text: {"--solver": the word after it, or None}; short names beside the long ones."""
-    found = {}
-    for names, value in OPTION.findall(text):
-        for name in names.split(","):
-            found[name] = value or None
-    return found
+def index_page(groups):
+    lines = ["# Command line\n", "```sh\npatchlight COMMAND [ARGUMENTS]\n```\n",
+             "| command | purpose |\n|---|---|"]
+    for commands in groups.values():
+        lines += [f"| [`{name}`]({name}.md) | {summary} |" for name, summary in commands]
+    lines += ["", "- `patchlight COMMAND -h` prints the options that most people use, with examples.",
+              "- `patchlight COMMAND --help` prints all options. The manual page `patchlight-COMMAND(1)` has the same text.",
+              "- `patchlight help TOPIC` prints a page of this documentation, e.g. `patchlight help daylight`.",
+              "- `patchlight --version` prints the version.", "",
+              "See also [common options](common-options.md) and [exit status](exit-status.md)."]
+    return "\n".join(lines) + "\n"
 
+
+def exit_page():
+    rows = "\n".join(f"| {code} | {meaning} |" for code, meaning in EXIT_STATUS)
+    return ("# Exit status\n\nEvery command returns one of these codes to the shell. A result file is always whole: it has "
+            f"either\nits old content or its new content.\n\n| code | meaning |\n|---|---|\n{rows}\n")
+
+
+# Manual pages
+
+def roff(text):
+    """Text in which nothing is a request of the formatter; code is bold."""
+    escaped = text.replace("\\", "\\e").replace("-", "\\-")
+    escaped = re.sub(r"`([^`]*)`", r"\\fB\1\\fR", escaped)
+    return re.sub(r"^(?=[.'])", r"\\&", escaped, flags=re.MULTILINE)
+
+
+def tagged(pairs):
+    return [f".TP\n\\fB{roff(head)}\\fR\n{roff(text)}" for head, text in pairs]
+
+
+def manual_of(command):
+    name = f"patchlight-{command.name}"
+    lines = [f".TH {name.upper()} 1", ".SH NAME", roff(f"{name} - {command.summary[0].lower()}{command.summary[1:-1]}"),
+             ".SH SYNOPSIS", f".B {roff(command.usage)}", ".SH DESCRIPTION", roff(command.about), ".SH OPTIONS"]
+    for title, options in in_groups(command.options).items():
+        lines += [f".SS {roff(title)}"] + tagged((option.head, f"{option.help}. {option.more}".rstrip())
+                                                 for option in options)
+    lines.append(".SH EXAMPLES")
+    for meaning, line in command.examples:
+        lines += [".PP", roff(meaning[0].upper() + meaning[1:]) + ":", ".PP", ".nf", ".RS", roff(line), ".RE", ".fi"]
+    if command.name in FILES:
+        lines += [".SH FILES"] + tagged(FILES[command.name])
+    others = ["patchlight"] + [f"patchlight-{other}" for other in SEE_ALSO[command.name]]
+    lines += [".SH EXIT STATUS"] + tagged(EXIT_STATUS)
+    lines += [".SH SEE ALSO", ", ".join(f"\\fB{roff(other)}\\fR(1)" for other in others)]
+    return "\n".join(lines) + "\n"
+
+
+def manual_of_tool(groups):
+    lines = [".TH PATCHLIGHT 1", ".SH NAME", roff("patchlight - lighting simulation for rooms and buildings"),
+             ".SH SYNOPSIS", ".B patchlight COMMAND [ARGUMENTS]", ".SH DESCRIPTION",
+             "patchlight computes how light from lamps, luminaires, sun and sky spreads through a model, by finite\\-element "
+             "radiosity. Every value has an error bar.", ".SH COMMANDS"]
+    for title, commands in groups.items():
+        lines += [f".SS {title}"] + tagged((f"{name}", f"{summary}. See patchlight-{name}(1).") for name, summary in commands)
+    lines += [".SH OPTIONS"] + tagged([("-h, --help", "Print help."), ("--version", "Print the version.")])
+    lines += [".SH EXAMPLES", ".nf", ".RS"]
+    lines += [roff(line) for line in ("patchlight check room.obj", "patchlight init room.obj -o room.toml",
+                                      "patchlight solve room.toml -o room.vtp --html room.html")]
+    lines += [".RE", ".fi", ".SH EXIT STATUS"] + tagged(EXIT_STATUS)
+    names = [f"patchlight\\-{roff(name)}" for commands in groups.values() for name, _ in commands]
+    lines += [".SH SEE ALSO", ", ".join(f"\\fB{name}\\fR(1)" for name in names)]
+    return "\n".join(lines) + "\n"
+
+
+# Completion
 
 COMPLETION = """# Completion of patchlight for bash. scripts/make_help.py writes this file.
 _patchlight() {{
@@ -118,38 +265,66 @@ complete -o filenames -F _patchlight patchlight
 """
 
 
-def completion(texts):
+def completion(commands):
     """Commands, then their options and the words that these take; files everywhere else."""
     choices, names = [], []
-    for words, text in texts.items():
-        if not words:
-            continue
-        found = options(text)
-        names.append(f"        {words[0]}) words=\"{' '.join(found)}\" ;;")
-        for name, value in found.items():
-            if value and re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", value):
-                choices.append(f"      {words[0]},{name}) words=\"{value.replace('|', ' ')}\" ;;")
-    return COMPLETION.format(commands=" ".join(words[0] for words in texts if words) + " --help --version",
+    for command in commands:
+        options = [option for option in command.options if option.head.startswith("-")]
+        names.append(f"        {command.name}) words=\"{' '.join(name for option in options for name in option.names())}\" ;;")
+        for option in options:
+            if re.fullmatch(r"[a-z0-9-]+(\|[a-z0-9-]+)+", option.value()):
+                choices.append(f"      {command.name},{option.names()[-1]}) words=\"{option.value().replace('|', ' ')}\" ;;")
+    return COMPLETION.format(commands=" ".join(command.name for command in commands) + " help --help --version",
                              choices="\n".join(choices), options="\n".join(names))
+
+
+def missing_options(command, files):
+    """Options that the help of a command has, but its manual page or its reference page does not."""
+    manual = files[MAN / f"patchlight-{command.name}.1"]
+    page = files[CLI / f"{command.name}.md"]
+    for name in re.findall(r"(?m)^  (?:-\w, )?(--[\w-]+)", run(command.name, "--help")):
+        if not re.search(re.escape(roff(name)) + r"(?!\w|\\-)", manual):
+            yield f"docs/man/patchlight-{command.name}.1 has no {name}"
+        if not re.search(re.escape(name) + r"(?![\w-])", page):
+            yield f"docs/reference/cli/{command.name}.md has no {name}"
+
+
+def all_files():
+    groups = groups_of_commands()
+    commands = [command_of(name) for group in groups.values() for name, _ in group]
+    counts = {}
+    for command in commands:
+        for option in command.options:
+            counts[option] = counts.get(option, 0) + 1
+    shared = {option for option, count in counts.items() if count >= SHARED}
+    files = {CLI / "index.md": index_page(groups), CLI / "common-options.md": common_page(commands, shared),
+             CLI / "exit-status.md": exit_page(), MAN / "patchlight.1": manual_of_tool(groups),
+             DOCS / "patchlight.bash": completion(commands)}
+    for command in commands:
+        files[CLI / f"{command.name}.md"] = page_of(command, shared)
+        files[MAN / f"patchlight-{command.name}.1"] = manual_of(command)
+    note = "<!-- scripts/make_help.py writes this page. -->\n"
+    return commands, {path: note + text if path.suffix == ".md" else text for path, text in files.items()}
 
 
 def main():
     check = sys.argv[1:] == ["--check"]
-    texts = {(): help_of()}
-    for command in commands(texts[()]):
-        texts[(command,)] = help_of(command)
-    stale = 0
-    for file, content in ((DOCS / "command_line.md", markdown(texts)), (DOCS / "patchlight.1", manual(texts)),
-                          (DOCS / "patchlight.bash", completion(texts))):
-        if file.exists() and file.read_text() == content:
+    commands, files = all_files()
+    there = {**files, **{path: path.read_text() for path in files if path.exists()}}
+    problems = [line for command in commands for line in missing_options(command, there if check else files)]
+    for path, content in files.items():
+        name = path.relative_to(DOCS.parent)
+        if path.exists() and path.read_text() == content:
             continue
         if check:
-            stale += 1
-            print(f"docs/{file.name} is not what the tool says; run scripts/make_help.py", file=sys.stderr)
+            problems.append(f"{name} is not up to date; run scripts/make_help.py")
         else:
-            file.write_text(content)
-            print(f"wrote docs/{file.name}")
-    return 1 if stale else 0
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(content)
+            print(f"wrote {name}")
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

@@ -115,10 +115,7 @@ void require_reflecting(const Scene& scene, const RadiosityProblem& problem, con
   if ((interest.array() == 1).all()) return;
   const Field even = interest.array().replicate(1, problem.exitance.cols());
   if ((highest(problem.scattering.reflect(even)) > 0).any()) return;
-  throw InputError(
-      scene.file,
-      "found nothing that reflects light among what is of interest; expected a material, object, group or room "
-      "with a reflectance above 0, as an accuracy is that of reflected light");
+  throw InputError(scene.file, "the surfaces of accuracy.interest reflect no light, of which the accuracy is measured");
 }
 
 void require_names(const Scene& scene, const std::vector<std::string>& names) {
@@ -127,7 +124,7 @@ void require_names(const Scene& scene, const std::vector<std::string>& names) {
     if (name == inside || name == outside || known.contains(interest_named(name, known).name)) continue;
     const std::vector<std::string> all(known.begin(), known.end());
     const std::string hint = suggestion(name, all);
-    std::string message = "found no material, object, group or room '" + name + "' to be interested in";
+    std::string message = "no material, object, group or room is called '" + name + "'";
     message += hint;
     message += hint.empty() ? "; expected one of " + first_of(all) : " Expected a name";
     message += ", or one with .inside or .outside";

@@ -75,7 +75,8 @@ PatchIndex patch_of(std::int32_t column) {
 
 [[noreturn]] void refuse_stops(const std::filesystem::path& file, const std::string& found,
                                const std::string& expected) {
-  throw InputError(file.string(), "found " + found + "; expected " + expected + ". Compute the form factors again");
+  throw InputError(file.string(),
+                   "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
 
 // A ray is in one row alone.
@@ -303,7 +304,8 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
-  throw InputError(file.string(), "found " + found + "; expected " + expected + ". Compute the form factors again");
+  throw InputError(file.string(),
+                   "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
 
 // Where rows begin among all their entries. What is below 0 in the file is a very large number here.

@@ -48,7 +48,7 @@ void require_raw_row_sums(const std::filesystem::path& file, const Eigen::Vector
     if (sums[i] >= 0 && sums[i] <= most[i]) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << " before closure; expected 0 to "
-         << most[i] << ". Compute the form factors again";
+         << most[i] << "\nhint: compute the form factors again";
     throw InputError(file.string(), text.str());
   }
 }
@@ -84,7 +84,7 @@ void require_row_sums(const std::filesystem::path& folder, const FormFactorInfo&
     if (sums[i] >= range.low && sums[i] <= range.high) continue;
     std::ostringstream text;
     text << "found form factors that sum to " << sums[i] << " in row " << i + 1 << "; expected " << range.low << " to "
-         << range.high << ", as raw_row_sum.npy and lost_share.npy say. Compute the form factors again";
+         << range.high << "\nhint: compute the form factors again";
     throw InputError((folder / file_name::dense).string(), text.str());
   }
 }
@@ -229,7 +229,7 @@ bool take(const Rows& rows, PatchRange columns, ExchangeAreas& S) {
       std::ostringstream text;
       text << "found a form factor " << form_factor << " and with it A_i F_ij = " << exchange_area
            << " where A_j F_ji = " << other
-           << "; expected equal numbers, finite and not negative. Compute the form factors again";
+           << "; expected equal numbers, finite and not negative\nhint: compute the form factors again";
       throw InputError(file.string(), text.str());
     }
   }
@@ -297,9 +297,9 @@ void require_same_geometry(const std::filesystem::path& folder, const FormFactor
        << " m and mesh.sides=" << name_of(info.sides) << "; expected those of " << mesh.size()
        << " patches with geometry " << wanted.substr(0, 12)
        << (info.patches == mesh.size() ? ": as many patches, but they lie elsewhere" : "")
-       << ". Give the same model, read.metres_per_unit and mesh.sides as then, and neither mesh.max_edge nor "
-          "mesh.patches; with mesh.sides=auto "
-          "the lamps decide, too. Or compute them again: patchlight form-factors MODEL -o "
+       << "\nhint: give the same model, lamps, read.metres_per_unit and mesh.sides, without mesh.max_edge and "
+          "mesh.patches"
+          "\nhint: or compute them again: patchlight form-factors MODEL -o "
        << folder.string();
   throw InputError(folder.string(), text.str());
 }
@@ -319,7 +319,7 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
   require_same_geometry(folder, info, mesh);
   if (info.format != MatrixFormat::npy) {
     throw InputError(folder.string(),
-                     "found F.mtx; expected F.npy. Compute the form factors again, with the matrix as npy");
+                     "found F.mtx; expected F.npy\nhint: compute the form factors again with --matrix npy");
   }
   const std::size_t size = info.patches;
   auto [area, lost] = read_shares(folder, info);

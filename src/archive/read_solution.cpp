@@ -134,8 +134,8 @@ Simulation read_solution(const std::filesystem::path& file, const Scene& scene) 
   StoredSolution stored = read_vtk(file);
   if (stored.scene_hash != scene_hash(scene)) {
     throw InputError(file.string(),
-                     "it is the solution of another scene: faces, materials or lights differ; expected that of the "
-                     "models and options that are given; solve these, or give those that it was solved with");
+                     "this is the solution of another scene: faces, materials or lights differ\n"
+                     "hint: give the models and model options of the solution, or solve again");
   }
   require_indices(stored, scene, file);
   require_values(stored, number_of_bands(scene), file);

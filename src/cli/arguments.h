@@ -6,6 +6,7 @@
 #include "patchlight/views/picture.h"
 
 #include "archive/form_factor_files.h"
+#include "cli/exit_code.h"
 #include "cli/messages.h"
 #include "output/plot/write_sensor_map.h"
 #include "study/compare.h"
@@ -99,7 +100,7 @@ struct CheckArguments {
 };
 
 /// What `patchlight init` is asked to do.
-struct NewArguments {
+struct InitArguments {
   std::vector<std::filesystem::path> models;
   ReadOptions read;
   std::filesystem::path output;  ///< .toml
@@ -118,7 +119,7 @@ struct FormFactorArguments {
 };
 
 /// What `patchlight compare-solvers` is asked to do.
-struct CompareArguments {
+struct ComparisonArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   Request request;
@@ -130,7 +131,7 @@ struct CompareArguments {
 };
 
 /// What `patchlight convergence` is asked to do.
-struct StudyArguments {
+struct ConvergenceArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   Request request;
@@ -142,7 +143,7 @@ struct StudyArguments {
 };
 
 /// What `patchlight crosscheck` is asked to do.
-struct VerifyArguments {
+struct CrosscheckArguments {
   std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
   ReadOptions read;
   Request request;
@@ -154,7 +155,7 @@ struct VerifyArguments {
 };
 
 /// What `patchlight selftest` is asked to do.
-struct ValidateArguments {
+struct SelftestArguments {
   std::filesystem::path json;   ///< .json; empty when it is not wanted
   bool json_on_stdout = false;  ///< instead of the table
   int threads = 0;              ///< 0: all processors
@@ -175,14 +176,15 @@ struct RenderArguments {
   std::string command_line;  ///< for the record
 };
 
-/// A text that the user asked for: --help or --version.
+/// A text that the user asked for: --help or --version; or the short help of a command that was given nothing.
 struct Information {
   std::string text;
+  ExitCode code = good;
 };
 
 using Arguments =
-    std::variant<Information, SolveArguments, CheckArguments, NewArguments, PlanArguments, FormFactorArguments,
-                 CompareArguments, StudyArguments, VerifyArguments, ValidateArguments, RenderArguments>;
+    std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments, FormFactorArguments,
+                 ComparisonArguments, ConvergenceArguments, CrosscheckArguments, SelftestArguments, RenderArguments>;
 
 /// Understands the command line; nothing is read or written. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

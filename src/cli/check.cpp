@@ -1,7 +1,6 @@
-#include "cli/check.h"
-
 #include "base/rounded.h"
 #include "base/shell_word.h"
+#include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
@@ -183,14 +182,14 @@ std::string lamp_lines(const SceneReport& report, std::size_t luminaires) {
 std::string daylight_lines(const Scene& scene) {
   std::ostringstream text;
   if (scene.sun) {
-    text << "sun: " << listed(scene.sun->normal_irradiance, ", ") << " W/m^2 across its rays, from ("
+    text << "sun: " << listed(scene.sun->normal_irradiance, ", ") << " W/m^2 direct normal, from ("
          << listed(scene.sun->direction, ", ") << ")\n";
   }
   if (!scene.sky) return text.str();
   const Sky& sky = *scene.sky;
   text << "sky: " << name_of(sky.kind) << ", ";
   if (sky.horizontal_irradiance.size() > 0) {
-    text << listed(sky.horizontal_irradiance, ", ") << " W/m^2 on the open ground\n";
+    text << listed(sky.horizontal_irradiance, ", ") << " W/m^2 horizontal, under the open sky\n";
   } else {
     text << listed(sky.zenith_radiance, ", ") << " W/(m^2 sr) from the zenith\n";
   }
@@ -199,15 +198,23 @@ std::string daylight_lines(const Scene& scene) {
   return text.str();
 }
 
+// A text of the library, with its hints on lines of their own.
+std::string with_hints(const std::string& text) {
+  const std::string mark = "\nhint: ";
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) return shown_name(with_option_names(text));
+  return with_hints(text.substr(0, at)) + "\n    hint: " + with_hints(text.substr(at + mark.size()));
+}
+
 std::string problem_lines(const Scene& scene, const SceneReport& report, bool all) {
   std::array<std::size_t, 3> count{};
   for (const Problem& problem : report.problems) ++count[static_cast<std::size_t>(severity_of(problem.kind))];
   std::vector<std::string> lines;
   for (const Problem& problem : report.problems) {
     lines.push_back(std::string(name_of(severity_of(problem.kind))) + ": " + name_of(problem.kind) + ": " +
-                    shown_name(with_option_names(problem.what)));
+                    with_hints(problem.what));
   }
-  for (const std::string& note : scene.notes) lines.push_back("note: " + shown_name(with_option_names(note)));
+  for (const std::string& note : scene.notes) lines.push_back("note: " + with_hints(note));
   std::string text = "problems: " + counted(count[0], "error") + ", " + counted(count[1], "warning") + ", " +
                      counted(count[2], "remark") + '\n';
   const std::size_t shown = all ? lines.size() : std::min(lines.size(), most_notes);
@@ -216,11 +223,11 @@ std::string problem_lines(const Scene& scene, const SceneReport& report, bool al
 }
 
 const char* verdict(const SceneReport& report) {
-  if (!report.usable) return "has no light yet; with one it can be solved";
+  if (!report.usable) return "has no light yet; can be solved once it has one";
   const bool has_errors = std::any_of(report.problems.begin(), report.problems.end(), [](const Problem& problem) {
     return severity_of(problem.kind) == Severity::error;
   });
-  return has_errors ? "can be solved, but something of it is lost: see its errors" : "can be solved";
+  return has_errors ? "can be solved, but parts are lost: see the errors" : "can be solved";
 }
 
 // The command that comes next.
@@ -277,7 +284,7 @@ ExitCode check(const CheckArguments& arguments) {
               << lamp_lines(report, scene.luminaires.size()) << daylight_lines(scene)
               << problem_lines(scene, report, arguments.all) << std::flush;
   }
-  if (!report.usable) print_message("note", scene.file + ": found no lamp: " + report.first_light->advice);
+  if (!report.usable) print_message("note", scene.file + ": no light source: " + report.first_light->advice);
   return good;
 }
 

@@ -1,7 +1,6 @@
-#include "cli/form_factors.h"
-
 #include "archive/ray_row_files.h"
 #include "base/parallel.h"
+#include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -78,7 +77,7 @@ std::vector<std::string> notes_on(const FormFactorArguments& arguments, const Sc
   for (const auto* notes : {&found.plan.sides.notes, &found.plan.notes, &found.notes})
     all.insert(all.end(), notes->begin(), notes->end());
   if (found.request.mesh.sides != arguments.request.mesh.sides)
-    all.emplace_back("without a lamp --sides auto cannot tell where light gets to: the front sides are used");
+    all.emplace_back("no light source, so --sides auto uses the front sides");
   return all;
 }
 

@@ -29,19 +29,20 @@ constexpr OptionText options[] = {
     {"--solution", "render", results, common, "FILE", "Solution of this model (.vtp), from patchlight solve", ""},
     {"--format", "", model, usual, "{formats|}", "Format of the model files [default: by extension; obj for -]", ""},
     {"--unit", "", model, common, "m|cm|mm|in|ft", "Length of one model unit [default: set by the file, else m]",
-     "Use it if `patchlight check` shows a wrong size, e.g. a room that is 4000 m long: --unit mm."},
+     "Use it if `patchlight check` shows a wrong size, e.g. a room that is 4000 m long: `--unit mm`."},
     {"--up", "", model, usual, "y|z", "Vertical axis of the model [default: by format, else guessed, with a note]",
      "glTF files have y up; IFC, gbXML and Radiance files z. In other formats patchlight takes the axis across which "
      "most area lies, or the axis against which the lamps shine."},
-    {"--set", "", model, common, "MATERIAL.QUANTITY=R,G,B", "Change a material, e.g. wall.reflectance=0.7 (repeatable)",
+    {"--set", "", model, common, "MATERIAL.QUANTITY=R,G,B",
+     "Change a material, e.g. wall.reflectance=0.7 (repeatable) [default: as read]",
      "Quantities: reflectance (diffuse), specular_reflectance (of a mirror), transmittance (of clear glass), "
      "diffuse_transmittance (of a translucent sheet), each from 0 to 1; exitance (W/m^2); radiance (W/(m^2 sr)); index "
      "(of refraction, one value; 1 is a perforated sheet, the same at all angles). One value stands for all bands. In "
-     "the name of the material, * and ? stand for any letters: --set 'lamp*.radiance=10'."},
+     "the name of the material, `*` and `?` stand for any letters: `--set 'lamp*.radiance=10'`."},
     {"--only", "", model, usual, "NAME", "Use only this object, group or material (repeatable) [default: all]",
-     "* and ? stand for any letters: --only 'IfcWall*' --only 'IfcSlab*'."},
+     "`*` and `?` stand for any letters: `--only 'IfcWall*'`."},
     {"--exclude", "", model, usual, "NAME", "Leave out an object, group or material (repeatable) [default: none]",
-     "* and ? stand for any letters: --exclude 'IfcFurnishing*'."},
+     "`*` and `?` stand for any letters: `--exclude 'IfcFurnishing*'`."},
     {"--simplify", "", model, usual, "LENGTH", "Remove objects smaller than LENGTH (e.g. 5cm) [default: keep all]",
      "Objects that differ from a box by less than LENGTH become boxes. A note lists the changes."},
     {"--maintenance-factor", "", model, usual, "NUMBER", "Maintenance factor of lamps and luminaires [default: 1]",
@@ -88,10 +89,11 @@ constexpr OptionText options[] = {
     {"--html", "", results, common, "FILE", "Interactive page for any browser, one file (.html) [default: none]",
      "Rotate the model, click a patch to read its value and error bar, and read all tables. The page needs no other "
      "file and no network."},
-    {"--json", "solve relight", results, common, "FILE", "Report of request, decisions, results (.json) [default: none]",
-     ""},
+    {"--json", "solve relight", results, common, "FILE",
+     "Report of request, decisions, results (.json) [default: none]", ""},
     {"--json", "plan", results, common, "FILE", "Plan as JSON (.json) [default: text only]", ""},
-    {"--json", "check selftest", results, common, "[FILE]", "Result as JSON, to FILE (.json) or to standard output", ""},
+    {"--json", "check selftest", results, common, "[FILE]", "Result as JSON, to FILE (.json) or to standard output",
+     ""},
     {"--json", "crosscheck", results, common, "FILE", "Verdict and all patches compared (.json) [default: none]", ""},
     {"--series", "", results, advanced, "FILE", "Series of all iterations for ParaView (.pvd) [default: none]",
      "The default solver is then Jacobi: its iteration k adds the light of reflection k."},
@@ -131,10 +133,11 @@ constexpr OptionText options[] = {
     {"--camera", "", pictures, usual, "EYE TARGET FOV", "View, e.g. 4,-3,1.6 0,0,1 60 [default: chosen by patchlight]",
      "EYE and TARGET are points X,Y,Z in model units. FOV is the vertical field of view in degrees."},
     {"--projection", "", pictures, usual, "NAME", "Projection of --camera [default: perspective]",
-     "perspective, orthographic, angular, hemispherical (both fisheye) or panorama. For orthographic, FOV is the visible "
+     "perspective, orthographic, angular, hemispherical (both fisheye) or panorama. For orthographic, FOV is the "
+     "visible "
      "height in model units, and everything nearer than the plane of the eye is cut away."},
-    {"--view", "", pictures, common, "NAME", "Camera of the scene file [default: the first]",
-     "patchlight render takes several: --view desk --view door."},
+    {"--view", "render", pictures, common, "NAME", "Camera of the scene file (repeatable) [default: the first]", ""},
+    {"--view", "", pictures, usual, "NAME", "Camera of the scene file [default: the first]", ""},
     {"--size", "", pictures, usual, "WIDTHxHEIGHT", "Size of the image in pixels [default: 800x800]", ""},
     {"--false-color", "", pictures, usual, "luminance", "False colors with a legend in cd/m^2 [default: natural]", ""},
     {"--picture-quality", "render", pictures, usual, "draft|final", "Quality of the image [default: final]",
@@ -144,8 +147,8 @@ constexpr OptionText options[] = {
     {"--picture-error", "", pictures, advanced, "NUMBER", "Standard error of pixels of a final image [default: 1%]",
      "Relative to the luminance; dark pixels may have a larger error."},
     {"--picture-samples", "", pictures, advanced, "N", "Most samples per pixel, a power of two [default: 64]", ""},
-    {"--picture-error-map", "", pictures, advanced, "FILE", "Error of each pixel in false colors (.png) [default: none]",
-     ""},
+    {"--picture-error-map", "", pictures, advanced, "FILE",
+     "Error of each pixel in false colors (.png) [default: none]", ""},
     {"--ambient-occlusion", "check", pictures, advanced, "LENGTH", "Reach of the shading of --picture, e.g. 2m",
      "Default: a tenth of the mean extent of the model."},
     {"--ambient-occlusion", "", results, advanced, "LENGTH", "Add ambient occlusion to .vtp results [default: none]",
@@ -180,7 +183,8 @@ constexpr OptionText options[] = {
      "The relative error of the mean radiosity of the patches. patchlight refines the patches and the sampling where "
      "this reduces the error most."},
     {"--time-limit", "", accuracy, common, "TIME", "Refine for this time, e.g. 30s or 2min [default: no limit]",
-     "The run ends earlier if --accuracy is reached. Sensors and images take additional time. Results with a time limit "
+     "The run ends earlier if --accuracy is reached. Sensors and images take additional time. Results with a time "
+     "limit "
      "are not reproducible bit for bit."},
     {"--focus", "", accuracy, usual, "NAME", "Minimize the error of this object or material (repeatable)",
      "An object, group, material or room, or one side of it: room.inside. Default: with daylight .inside, all enclosed "
@@ -198,7 +202,8 @@ constexpr OptionText options[] = {
     {"--method", "", method, common, "auto|pairs|rays|on-demand", "How form factors are computed [default: auto]",
      "pairs: all pairs of patches, most accurate. rays: sampled, for large models, mirrors and glazing. on-demand: "
      "computed whenever the solver needs them, least memory and an early first result, without closure. auto uses "
-     "pairs; rays from 10,000 patches (from 1,000 if faces have few patches each), for mirrors and glazing and if memory "
+     "pairs; rays from 10,000 patches (from 1,000 if faces have few patches each), for mirrors and glazing and if "
+     "memory "
      "is short; and pairs whenever another option needs them."},
     {"--rays", "", method, usual, "N", "Mean number of rays per patch; implies --method rays [default: 64]",
      "Four times as many rays halve their error. With --method auto the plan uses 256 rays for mirrors, glazing or "
@@ -269,13 +274,15 @@ constexpr std::string_view start = "Start", understand = "Understand", variants 
 
 constexpr CommandText commands[] = {
     {"check", start, "Report the contents of a model and its problems", "MODEL... [OPTIONS]",
-     "Reads a model and reports its size, faces, materials, lights, rooms and glazing, the problems of its geometry, and "
+     "Reads a model and reports its size, faces, materials, lights, rooms and glazing, the problems of its geometry, "
+     "and "
      "the command to run next. It solves nothing.",
      "# contents and problems on one screen\npatchlight check room.obj\n"
      "# every problem, and the faces for ParaView\npatchlight check house.ifc --all --problems problems.vtp\n"
      "# an image of the model without light\npatchlight check house.ifc --picture house.png\n"},
     {"init", start, "Create a commented scene file for a model", "MODEL... -o SCENE.toml [OPTIONS]",
-     "Writes a scene file (TOML) that adds to a model what it lacks: a sky (or a lamp, if the model has no windows), the "
+     "Writes a scene file (TOML) that adds to a model what it lacks: a sky (or a lamp, if the model has no windows), "
+     "the "
      "glazing, and a sensor grid and a camera in each room. Edit the file, then solve it.",
      "# a scene with daylight and sensors\npatchlight init house.ifc -o house.toml\n"
      "# a model in millimetres\npatchlight init room.obj --unit mm -o room.toml\n"
@@ -301,7 +308,8 @@ constexpr CommandText commands[] = {
      "# the cost of more patches\npatchlight plan house.ifc --sky overcast --patches 100000\n"
      "# for a script\npatchlight plan room.obj --json plan.json\n"},
     {"crosscheck", understand, "Check a solution with an independent path tracer", "MODEL... [OPTIONS]",
-     "Solves the model, traces paths to some patches, sensors and rooms, and compares both. The exit status is 5 if they "
+     "Solves the model, traces paths to some patches, sensors and rooms, and compares both. The exit status is 5 if "
+     "they "
      "disagree.",
      "# agreement within the error bars\npatchlight crosscheck room.obj\n"
      "# a sharper check of more patches\npatchlight crosscheck room.obj --sample-patches 200 --paths 16384\n"

@@ -22,10 +22,10 @@ struct OptionText {
 
 struct CommandText {
   std::string_view name;
-  std::string_view group;  ///< of the list of commands
-  std::string_view help;   ///< one line
-  std::string_view usage;  ///< "MODEL... -o RESULT.vtp [OPTIONS]"
-  std::string_view more;   ///< paragraphs
+  std::string_view group;     ///< of the list of commands
+  std::string_view help;      ///< one line
+  std::string_view usage;     ///< "MODEL... -o RESULT.vtp [OPTIONS]"
+  std::string_view more;      ///< paragraphs
   std::string_view examples;  ///< a line for each, "# meaning" before it
 };
 

@@ -1,21 +1,12 @@
 #include "patchlight/base/error.h"
 
 #include "cli/arguments.h"
-#include "cli/check.h"
-#include "cli/compare.h"
+#include "cli/commands.h"
 #include "cli/exit_code.h"
-#include "cli/form_factors.h"
 #include "cli/former_names.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "cli/new.h"
-#include "cli/plan.h"
-#include "cli/render.h"
-#include "cli/solve.h"
 #include "cli/standard_streams.h"
-#include "cli/study.h"
-#include "cli/validate.h"
-#include "cli/verify.h"
 
 #include <algorithm>
 #include <csignal>
@@ -43,22 +34,23 @@ void remark_on_former_names(int count, const char* const* values) {
 ExitCode run(int count, const char* const* values) {
   remark_on_former_names(count, values);
   const Arguments arguments = parse_arguments(count, values);
-  if (const auto* information = std::get_if<Information>(&arguments)) {
-    std::cout << information->text;
-    return good;
-  }
-  if (const auto* to_check = std::get_if<CheckArguments>(&arguments)) return check(*to_check);
-  if (const auto* to_begin = std::get_if<NewArguments>(&arguments)) return new_scene(*to_begin);
-  if (const auto* to_plan = std::get_if<PlanArguments>(&arguments)) return plan(*to_plan);
-  if (const auto* to_find = std::get_if<FormFactorArguments>(&arguments)) return form_factors(*to_find);
-  if (const auto* to_compare = std::get_if<CompareArguments>(&arguments)) return compare(*to_compare);
-  if (const auto* to_study = std::get_if<StudyArguments>(&arguments)) return study(*to_study);
-  if (const auto* to_verify = std::get_if<VerifyArguments>(&arguments)) return verify(*to_verify);
-  if (const auto* to_validate = std::get_if<ValidateArguments>(&arguments)) {
-    return validate(*to_validate, validation_cases());
-  }
-  if (const auto* to_render = std::get_if<RenderArguments>(&arguments)) return render(*to_render);
-  return solve(std::get<SolveArguments>(arguments));
+  struct Run {
+    ExitCode operator()(const Information& information) const {
+      (information.code == good ? std::cout : std::cerr) << information.text;
+      return information.code;
+    }
+    ExitCode operator()(const CheckArguments& asked) const { return check(asked); }
+    ExitCode operator()(const InitArguments& asked) const { return init(asked); }
+    ExitCode operator()(const SolveArguments& asked) const { return solve(asked); }
+    ExitCode operator()(const RenderArguments& asked) const { return render(asked); }
+    ExitCode operator()(const PlanArguments& asked) const { return plan(asked); }
+    ExitCode operator()(const CrosscheckArguments& asked) const { return crosscheck(asked); }
+    ExitCode operator()(const FormFactorArguments& asked) const { return form_factors(asked); }
+    ExitCode operator()(const ComparisonArguments& asked) const { return compare_solvers(asked); }
+    ExitCode operator()(const ConvergenceArguments& asked) const { return convergence(asked); }
+    ExitCode operator()(const SelftestArguments& asked) const { return selftest(asked, validation_cases()); }
+  };
+  return std::visit(Run{}, arguments);
 }
 
 // The limit of processes of a user or a container. TBB reports it as a runtime_error that names the function.
@@ -96,14 +88,14 @@ int main(int count, char** values) {
   } catch (const MemoryError& error) {
     return failed(out_of_memory, error.what());
   } catch (const std::bad_alloc&) {
-    return failed(out_of_memory, "the memory is used up; ask for fewer patches with --patches or --max-edge");
+    return failed(out_of_memory, "out of memory\nhint: fewer --patches, or a larger --max-edge");
   } catch (const Cancelled&) {
     return failed(interrupted_run(), "interrupted; no further file was written");
   } catch (const std::exception& error) {
     if (is_process_limit(error)) {
       return failed(out_of_memory,
-                    "no further thread or process may start, as the limit of processes is reached (ulimit -u, "
-                    "RLIMIT_NPROC); use --threads 1, or raise the limit");
+                    "no further thread or process can start: the limit of processes is reached\n"
+                    "hint: use --threads 1, or raise the limit (ulimit -u)");
     }
     return failed(internal_error, (std::string("internal error: ") + error.what()).c_str());
   }

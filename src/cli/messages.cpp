@@ -43,9 +43,14 @@ std::string visible(std::string_view character) {
 }  // namespace
 
 void print_message(const char* kind, const std::string& text) {
-  std::string line = with_option_names(text);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  std::cerr << "patchlight: " << kind << ": " << printable(line) << '\n';
+  std::string lines = with_option_names(text);
+  for (std::size_t end = lines.find('\n'); end != std::string::npos; end = lines.find('\n', end + 1))
+    if (lines.compare(end + 1, 6, "hint: ") != 0) lines[end] = ' ';
+  std::cerr << "patchlight: " << kind << ": " << printable(lines) << '\n';
+}
+
+void print_scene_warnings(const Scene& scene) {
+  for (const std::string& warning : warnings_of(scene)) print_message("warning", scene.file + ": " + warning);
 }
 
 std::string printable(std::string_view text) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "patchlight/scene/scene.h"
+
 #include <string>
 #include <string_view>
 
@@ -8,9 +10,13 @@ namespace patchlight::cli {
 /// How much the tool says.
 enum class Verbosity { quiet, normal, verbose };
 
-/// Prints one line "patchlight: KIND: TEXT" on stderr; line breaks in the text become spaces, names of fields of the
-/// library those of options.
+/// Prints "patchlight: KIND: TEXT" on stderr, with the names of options in place of fields of the library. Each part of
+/// the text that begins with "hint: " on a new line has a line of its own; other line breaks become spaces.
 void print_message(const char* kind, const std::string& text);
+
+/// Prints a warning on stderr for each problem that can make all results wrong. Commands call it before the work
+/// begins, also when they are quiet.
+void print_scene_warnings(const Scene& scene);
 
 /// A text in which no character acts on a terminal: control characters (C0, DEL and C1) but for line breaks are written
 /// as \u001b, as in JSON, and bytes that are no UTF-8 and may act as C1 as \x9b.

@@ -2,65 +2,37 @@
 
 #include "cli/add_option.h"
 #include "cli/arguments.h"
-#include "cli/daylight_options.h"
 #include "cli/parse_value.h"
+#include "light/solar_position.h"
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <regex>
+#include <tuple>
 #include <utility>
 
 namespace patchlight::cli {
 namespace {
 
-// The formats that can be read, as one word or list.
-std::string formats(const std::string& separator) {
-  std::string list;
-  for (const std::string& format : readable_formats()) list += (list.empty() ? "" : separator) + format;
-  return list;
-}
-
 void add_choice_options(CLI::App& command, ModelOptions& options) {
-  command.option_defaults()->group("The model");
-  command
-      .add_option("--only", options.only,
-                  "only faces of objects, groups or materials of this name take\npart (* and ? stand for any letters: "
-                  "'IfcWall*'); may be\nrepeated; default: all")
-      ->allow_extra_args(false)
-      ->option_text("NAME");
-  command
-      .add_option("--exclude", options.leave_out,
-                  "faces of objects, groups or materials of this name do not take\npart; may be repeated; default: all "
-                  "do")
-      ->allow_extra_args(false)
-      ->option_text("NAME");
-  add(command, "--simplify", "LENGTH",
-      "bodies that are smaller, as 5cm, are left out, and those that\ndiffer by less from a box become boxes; a note "
-      "tells "
-      "what went;\ndefault: all stay",
-      [&options](const std::string& text) { options.detail = length("--simplify", text); });
-  add(command, "--maintenance-factor", "NUMBER",
-      "the share of their light when new that lamps and luminaires give,\nas 0.8 or 80%; daylight is not changed; "
-      "default: what the scene\nfile says, else 1",
-      [&options](const std::string& text) {
-        options.maintenance_factor = text.ends_with('%')
-                                         ? share("--maintenance-factor", text)
-                                         : number("--maintenance-factor", text, "a number above 0 and up to 1, as 0.8",
-                                                  [](double x) { return x > 0 && x <= 1; });
-        if (*options.maintenance_factor > 1) throw refusal("--maintenance-factor", text, "at most 100%");
-      });
-  add(command, "--bands", "N|rgb|auto",
-      "spectral bands of equal widths from 380 to 780 nm, or linear\nRGB, whatever has a spectrum; default: as the "
-      "scene file says,\nelse auto: RGB where nothing has a spectrum, or as many as\n--color-error needs",
-      [&options](const std::string& text) { options.bands = text; });
-  add(command, "--color-error", "DE", "how far colours may be off by the number of bands, CIE dE00;\ndefault 1",
-      [&options](const std::string& text) {
-        options.color_error =
-            number("--color-error", text, "a colour difference above 0", [](double value) { return value > 0; });
-      });
-  command.add_flag("--no-merge", options.keep_faces,
-                   "faces stay as the file has them; default: those of one object\nand material that lie in one plane "
-                   "and share edges become one");
+  add_list(command, "--only", options.only);
+  add_list(command, "--exclude", options.leave_out);
+  add(command, "--simplify", [&options](const std::string& text) { options.detail = length("--simplify", text); });
+  add(command, "--maintenance-factor", [&options](const std::string& text) {
+    options.maintenance_factor = text.ends_with('%')
+                                     ? share("--maintenance-factor", text)
+                                     : number("--maintenance-factor", text, "a number above 0 and up to 1, e.g. 0.8",
+                                              [](double x) { return x > 0 && x <= 1; });
+    if (*options.maintenance_factor > 1) throw refusal("--maintenance-factor", text, "at most 100%");
+  });
+  add(command, "--bands", [&options](const std::string& text) { options.bands = text; });
+  add(command, "--color-error", [&options](const std::string& text) {
+    options.color_error =
+        number("--color-error", text, "a color difference above 0", [](double value) { return value > 0; });
+  });
+  add_flag(command, "--no-merge", [&options] { options.keep_faces = true; });
 }
 
 // What --bands and --color-error ask for, if they do.
@@ -79,37 +51,118 @@ std::optional<BandsAsked> bands_asked(const ModelOptions& options) {
   return asked;
 }
 
+// Before and behind the last of a letter; the second is empty without one.
+std::pair<std::string, std::string> parted(const std::string& text, char letter) {
+  const std::size_t at = text.rfind(letter);
+  if (at == std::string::npos) return {text, {}};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+// An illuminance above 0, e.g. 10000lx or 10000.
+double illuminance(const std::string& option, const std::string& text, const std::string& expected) {
+  const std::string value = text.ends_with("lx") ? text.substr(0, text.size() - 2) : text;
+  return number(option, value, expected, [](double lux) { return lux > 0; });
+}
+
+void take_sky(DaylightSetting& daylight, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string strength = colon == std::string::npos ? "" : text.substr(colon + 1);
+  daylight.sky = choice<SkyKind>("--sky", text.substr(0, colon),
+                                 {{"overcast", SkyKind::cie_overcast},
+                                  {"uniform", SkyKind::uniform},
+                                  {"clear", SkyKind::cie_clear},
+                                  {"perez", SkyKind::perez}});
+  if (daylight.sky != SkyKind::perez) {
+    if (colon != std::string::npos)
+      daylight.sky_illuminance =
+          illuminance("--sky", strength, "an illuminance in lx after the colon, e.g. overcast:10000lx");
+    return;
+  }
+  const std::string expected = "perez:DIRECT,DIFFUSE, the direct normal and the diffuse horizontal irradiance in W/m^2";
+  const std::vector<std::string> values = split(strength);
+  if (values.size() != 2) throw refusal("--sky", text, expected);
+  const auto irradiance = [&](const std::string& value) {
+    return number("--sky", value, expected, [](double watts) { return watts >= 0; });
+  };
+  daylight.measured = SolarIrradiance{irradiance(values[0]), irradiance(values[1])};
+}
+
+// A date and time with its offset, in UTC.
+Instant instant(const std::string& text) {
+  static const std::regex form(R"((\d{4})-(\d{2})-(\d{2})[T ](\d{2}):(\d{2})(?::(\d{2}))?(?:Z|([+-])(\d{2}):(\d{2})))");
+  std::smatch found;
+  const bool matches = std::regex_match(text, found, form);
+  const auto part = [&](std::size_t k) { return found[k].matched ? std::stoi(found[k]) : 0; };
+  const std::chrono::year_month_day day(std::chrono::year(part(1)), std::chrono::month(static_cast<unsigned>(part(2))),
+                                        std::chrono::day(static_cast<unsigned>(part(3))));
+  if (!matches || !day.ok() || part(4) > 23 || part(5) > 59 || part(6) > 59 || part(8) > 14 || part(9) > 59)
+    throw refusal("--sun", text,
+                  "a day of the calendar and a time with its offset, e.g. 2024-06-21T12:00:00Z or "
+                  "2024-06-21T13:00+01:00, before the @");
+  const double minutes_east = (found[7].str() == "-" ? -1 : 1) * (60 * part(8) + part(9));
+  return {part(1), part(2), part(3), part(4) + (part(5) - minutes_east) / 60.0 + part(6) / 3600.0};
+}
+
+// Two angles in degrees, the first from -90 to 90, the second from -360 to 360.
+std::pair<double, double> angles(const std::string& text, const std::string& expected) {
+  const std::vector<std::string> values = split(text);
+  if (values.size() != 2) throw refusal("--sun", text, expected);
+  const auto angle = [&](const std::string& value, double largest) {
+    return number("--sun", value, expected, [largest](double degrees) { return std::abs(degrees) <= largest; });
+  };
+  return {angle(values[0], 90), angle(values[1], 360)};
+}
+
+void take_sun(DaylightSetting& daylight, const std::string& text) {
+  const std::size_t at = text.find('@');
+  const auto [place, strength] = [&]() -> std::pair<std::string, std::string> {
+    const std::string rest = at == std::string::npos ? text : text.substr(at + 1);
+    return parted(rest, ':');
+  }();
+  DaylightSetting::SunPlace sun;
+  if (at == std::string::npos) {
+    std::tie(sun.altitude, sun.azimuth) =
+        angles(place, "the sun's altitude and its azimuth from north over east, degrees, e.g. 40,180:80000lx");
+  } else {
+    const auto [latitude, longitude] =
+        angles(place, "latitude and longitude in degrees after the @, north and east positive, e.g. 52.5,13.4");
+    const Instant when = instant(text.substr(0, at));
+    const SolarPosition position = solar_position({latitude, longitude}, when);
+    sun = {position.altitude, position.azimuth, day_of_year(when)};
+  }
+  daylight.sun = sun;
+  if (!strength.empty())
+    daylight.sun_illuminance = illuminance("--sun", strength, "an illuminance across its rays in lx, e.g. :80000lx");
+}
+
+void take_weather(DaylightSetting& daylight, const std::string& text) {
+  const auto [file, when] = parted(text, '@');
+  static const std::regex form(R"((\d{1,2})-(\d{1,2})-(\d{1,2}))");
+  std::smatch found;
+  const bool matches = std::regex_match(when, found, form);
+  const auto part = [&](std::size_t k) { return matches ? std::stoi(found[k]) : -1; };
+  const bool is_hour = part(1) >= 1 && part(1) <= 12 && part(2) >= 1 && part(2) <= 31 && part(3) >= 0 && part(3) <= 23;
+  if (file.empty() || !is_hour)
+    throw refusal("--weather", text,
+                  "FILE.epw@MONTH-DAY-HOUR, with the hour at which it begins, e.g. city.epw@6-21-12");
+  daylight.weather = DaylightSetting::WeatherFile{file, part(1), part(2), part(3)};
+}
+
 }  // namespace
 
 void add_file_options(CLI::App& command, ModelOptions& options) {
-  command.option_defaults()->group("The model");
-  command
-      .add_option(
-          "MODEL", options.models,
-          "the model, or several files that together are one\nscene: " + formats(", ") + "; - is the\nstandard input")
-      ->option_text("...");
-  command
-      .add_option_function<std::string>(
-          "--format",
-          [&options](const std::string& text) {
-            std::vector<std::pair<std::string, std::string>> allowed;
-            for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
-            options.format = choice<std::string>("--format", text, allowed);
-          },
-          "format of the model files; default: from the extension,\nobj for -")
-      ->option_text(formats("|"));
-  command
-      .add_option_function<std::string>(
-          "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); },
-          "length of one model unit, instead of what the file states;\ndefault: as the file states, else m")
-      ->option_text("m|cm|mm|in|ft");
+  add_list(command, "MODEL", options.models);
+  add(command, "--format", [&options](const std::string& text) {
+    std::vector<std::pair<std::string, std::string>> allowed;
+    for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
+    options.format = choice<std::string>("--format", text, allowed);
+  });
+  add(command, "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
   add_up_option(command, options.up);
-  add(command, "--confine", "FOLDER",
-      "reads no file outside of this folder, whatever the model names\nand wherever links lead; default: any file",
-      [&options](const std::string& text) {
-        if (text.empty()) throw refusal("--confine", text, "the name of a folder");
-        options.confine = text;
-      });
+  add(command, "--confine", [&options](const std::string& text) {
+    if (text.empty()) throw refusal("--confine", text, "the name of a folder");
+    options.confine = text;
+  });
 }
 
 void add_model_options(CLI::App& command, ModelOptions& options) {
@@ -120,26 +173,21 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
 }
 
 void add_up_option(CLI::App& command, std::optional<Vector>& up) {
-  command.option_defaults()->group("The model");
-  add(command, "--up", "y|z",
-      "the model's upright axis: where down is for lamps, sky and\npictures; default: as the format says (y: glTF; z: "
-      "IFC, gbXML,\nRadiance), else that across which most area lies, or against the\nlamps' light",
-      [&up](const std::string& text) {
-        up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
-      });
+  add(command, "--up", [&up](const std::string& text) {
+    up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
+  });
 }
 
-void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
-  command.option_defaults()->group("The model");
-  command
-      .add_option("--set", settings,
-                  "changes a material (* and ? in its name stand for any\nletters): reflectance (diffuse), "
-                  "specular_reflectance (as "
-                  "of a\nmirror), transmittance (straight) or diffuse_transmittance (of\na translucent sheet; 0 to 1), "
-                  "exitance (W/m^2), radiance\n(W/(m^2 sr)) or index (of refraction, 1 or more, one value;\n1: a "
-                  "sheet with holes, the same at all angles); may be\nrepeated; default: as in the model")
-      ->allow_extra_args(false)
-      ->option_text("MATERIAL.QUANTITY=R,G,B");
+void add_set_option(CLI::App& command, std::vector<std::string>& settings) { add_list(command, "--set", settings); }
+
+void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
+  add(command, "--sky", [&daylight](const std::string& text) { take_sky(daylight, text); });
+  add(command, "--sun", [&daylight](const std::string& text) { take_sun(daylight, text); });
+  add(command, "--ground", [&daylight](const std::string& text) {
+    daylight.ground_reflectance =
+        number("--ground", text, "0 to 1", [](double value) { return value >= 0 && value <= 1; });
+  });
+  add(command, "--weather", [&daylight](const std::string& text) { take_weather(daylight, text); });
 }
 
 std::vector<std::filesystem::path> model_files(const ModelOptions& options) {

@@ -27,12 +27,11 @@ struct ModelOptions {
   std::string confine;
 };
 
-/// Adds MODEL, --format, --unit, --up and --confine to a command; what is parsed lands in `options`, which must outlive
-/// it.
+/// Adds the arguments that name the files and their units. What is parsed lands in `options`, which must outlive the
+/// command; so below.
 void add_file_options(CLI::App& command, ModelOptions& options);
 
-/// Adds MODEL, --format, --unit, --set, --only, --exclude, --up, --confine and the daylight to a command. What is
-/// parsed lands in `options`, which must outlive it.
+/// The same, and what changes the model: materials, choice of faces, daylight.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 /// Adds --set alone.
@@ -40,6 +39,9 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 
 /// Adds --up alone.
 void add_up_option(CLI::App& command, std::optional<Vector>& up);
+
+/// Adds --sky, --sun, --ground and --weather.
+void add_daylight_options(CLI::App& command, DaylightSetting& daylight);
 
 /// The model files as paths. \throws UsageError when one is given twice.
 std::vector<std::filesystem::path> model_files(const ModelOptions& options);

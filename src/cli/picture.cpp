@@ -4,7 +4,7 @@
 #include "patchlight/output/write_image.h"
 
 #include "base/rounded.h"
-#include "cli/picture_options.h"
+#include "cli/output_options.h"
 #include "output/image/write_picture.h"
 #include "render/lens.h"
 
@@ -58,15 +58,15 @@ std::optional<std::string> missed_error(const PictureSettings& settings, const P
   const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
   std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
                      " (root mean square), not the " + rounded(100 * settings.error, 2) +
-                     "% of --picture-error, as a pixel has " + std::to_string(settings.most_samples) +
-                     " samples at most; ";
+                     "% of --picture-error, with at most " + std::to_string(settings.most_samples) +
+                     " samples per pixel\nhint: ";
   // Errors fall with the root of the samples' number at the slowest.
   const double times = std::pow(*picture.reached_error / settings.error, 2);
   const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(wanted));
   if (samples > static_cast<std::uint32_t>(settings.most_samples))
-    text += "--picture-samples " + std::to_string(samples) + " allows more, ";
-  return text + "a larger --picture-error asks for less";
+    text += "--picture-samples " + std::to_string(samples) + ", or ";
+  return text + "a larger --picture-error";
 }
 
 void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {

@@ -1,12 +1,10 @@
-#include "cli/plan.h"
-
 #include "base/parallel.h"
 #include "base/rounded.h"
+#include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/scene_warnings.h"
 #include "cli/summary.h"
 #include "mesh/nested_mesh.h"
 #include "output/file/whole_file.h"
@@ -65,16 +63,12 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
   const bool has_second_mesh = makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan);
   const std::string sensors = cost.sensors == 0
                                   ? ""
-                                  : counted(cost.sensors, "sensor") + " of some " + rounded(cost.sensor_seconds, 2) +
+                                  : counted(cost.sensors, "sensor") + " of about " + rounded(cost.sensor_seconds, 2) +
                                         (cost.of_first_mesh ? " processor seconds or more, " : " processor seconds, ");
-  return std::string("on top of that: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
+  return std::string("in addition: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
          (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
-         "pictures and pages, where they are asked for" +
-         (plan.accuracy.seconds
-              ? "; --time-limit is that of the meshes: it does not have what looks at the last one, as "
-                "sensors and pictures do"
-              : "") +
-         "\n";
+         "requested images and pages" +
+         (plan.accuracy.seconds ? "; --time-limit does not include sensors and images" : "") + "\n";
 }
 
 }  // namespace

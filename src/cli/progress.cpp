@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "cli/interrupt.h"
-#include "cli/scene_warnings.h"
+#include "cli/messages.h"
 
 #include <cmath>
 #include <iostream>

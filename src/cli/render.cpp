@@ -1,5 +1,3 @@
-#include "cli/render.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/views/views.h"
 
@@ -7,12 +5,12 @@
 #include "archive/read_solution.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
+#include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
-#include "cli/lightmap_options.h"
 #include "cli/messages.h"
+#include "cli/output_options.h"
 #include "cli/picture.h"
-#include "cli/picture_options.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
@@ -49,8 +47,7 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   std::vector<Camera> cameras;
   for (const PictureSettings& one : wanted) {
     const std::optional<Camera> camera = camera_for(one, scene);
-    if (!camera)
-      throw InputError("--observers", "the scene has no [[camera]]; expected one, or --camera EYE TARGET FOV");
+    if (!camera) throw InputError("--observers", "the scene has no [[camera]]\nhint: --camera EYE TARGET FOV");
     cameras.push_back(*camera);
   }
   return cameras;
@@ -160,7 +157,7 @@ ExitCode render(const RenderArguments& arguments) {
   if (!arguments.quiet) std::cout << said << files_line(written) << std::flush;
   if (!stopped) return good;
   print_message("warning", unfinished ? "interrupted; the last picture is unfinished, with larger errors than asked for"
-                                      : "interrupted; what is written is finished");
+                                      : "interrupted; the files that were written are complete");
   return interrupted_run();
 }
 

@@ -1,5 +1,3 @@
-#include "cli/solve.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_result.h"
 #include "patchlight/simulate.h"
@@ -8,19 +6,16 @@
 
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
-#include "cli/accuracy_options.h"
 #include "cli/checkpoint.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/lightmap_options.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
+#include "cli/output_options.h"
 #include "cli/picture.h"
 #include "cli/progress.h"
-#include "cli/scene_warnings.h"
-#include "cli/sensors.h"
-#include "cli/solution_options.h"
+#include "cli/run_options.h"
 #include "cli/solve_input.h"
-#include "cli/step_in_words.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
 #include "output/file/write_bytes.h"
@@ -90,8 +85,8 @@ class Iterates {
     const auto found = std::find_if(solutions_.rbegin(), solutions_.rend(), is_it);
     if (found == solutions_.rend() && is_solved_by_colours(simulation))
       throw InputError("--series",
-                       "found clear faces or mirrors of several colours, whose light is solved colour by colour; a "
-                       "series needs one solution: leave it out, or give --disable color");
+                       "colored glazing or mirrors need one solution for each color, but a series shows only one\n"
+                       "hint: leave --series out, or give --disable color");
     if (found == solutions_.rend()) throw Cancelled();
     return std::move(*found);
   }
@@ -139,8 +134,8 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   check_limits(input.scene);
   if (arguments.map.quantity == MapQuantity::daylight_factor && !has_daylight_factors(input.scene))
     throw InputError("--map",
-                     "found daylight-factor, which is of a CIE overcast sky as the only light; expected one, as "
-                     "in --sky overcast:10000lx, or --map illuminance");
+                     "daylight factors need a CIE overcast sky as the only light\n"
+                     "hint: --sky overcast:10000lx, or --map illuminance");
   if (const std::optional<Camera> camera = camera_for(arguments.picture, input.scene)) {
     const Reach reach = reach_of(input.scene);
     require_in_reach(reach, camera->eye, "--camera", "the eye");
@@ -344,14 +339,13 @@ void write_views(const SolveArguments& arguments, const Results& results, const 
       });
 }
 
-// Said of a result without error bars.
+// How the errors can be computed, after a statement that they are not known.
 std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished) {
   if (unfinished) return "";
   if (!arguments.form_factors.empty())
-    return " with stored form factors; patchlight solve MODEL tells the error for as many --patches, and form "
-           "factors of more --patches err less";
+    return " with stored form factors\nhint: patchlight solve MODEL computes error bars";
   const auto part = part_without_error_bars(arguments.request);
-  return part ? " with " + with_option_names(*part) : "; --error-bars tells them, in about twice the time";
+  return part ? " with " + with_option_names(*part) : "\nhint: --error-bars computes it, in about twice the time";
 }
 
 // Prints notes, warnings and the summary.

@@ -5,6 +5,8 @@
 #include "archive/form_factor_files.h"
 #include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
+#include "input/tables/read_points.h"
+#include "input/text.h"
 #include "plan/choose_storage.h"
 #include "scene/specular_faces.h"
 
@@ -19,8 +21,8 @@ namespace {
 void require_same_unit(const std::filesystem::path& folder, const FormFactorInfo& info, const Scene& scene) {
   if (info.metres_per_unit == scene.metres_per_unit) return;
   std::ostringstream text;
-  text << "found form factors of a model with " << info.metres_per_unit << " m per unit; this one is read with "
-       << scene.metres_per_unit << ". Give the same --unit as then";
+  text << "these form factors are of a model with " << info.metres_per_unit << " m per unit; now it has "
+       << scene.metres_per_unit << "\nhint: give the same --unit";
   throw InputError(folder.string(), text.str());
 }
 
@@ -34,7 +36,7 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
   std::ostringstream text;
   text << "found form factors of " << info.patches << " patches with edges up to " << info.max_edge << " m, made from "
        << info.model << "; this model takes at least " << least
-       << " such patches. Give the model of then, or compute them again: patchlight form-factors MODEL -o FOLDER";
+       << " such patches\nhint: give the same model, or compute them again: patchlight form-factors MODEL -o FOLDER";
   throw InputError(folder.string(), text.str());
 }
 
@@ -58,10 +60,9 @@ void require_same_panes(const std::filesystem::path& folder, const StoredShares&
     const double now = held[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
     if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
     std::ostringstream text;
-    text << "found form factors with a face that lets the share " << 1 - then
-         << " of an even sky's light go on, through "
-         << "it or as from a mirror; now it lets " << 1 - now << " go on. Set the transmittance, index and specular "
-         << "reflectance of then, or compute them again: patchlight form-factors MODEL -o FOLDER";
+    text << "these form factors have a face that passes the fraction " << 1 - then
+         << " of diffuse light as glazing or mirror; now it passes " << 1 - now
+         << "\nhint: restore the material, or compute them again: patchlight form-factors MODEL -o FOLDER";
     throw InputError(folder.string(), text.str());
   }
 }
@@ -72,26 +73,22 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
   if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;
   if (request.mesh.sides == Sides::automatic) request.mesh.sides = info.sides;
   if (!request.mesh.contact_lines && info.contact_lines)
-    throw InputError(
-        arguments.form_factors.string(),
-        "found patches that end where faces touch, with --no-contact-lines; leave that out, or compute the form "
-        "factors again with it: patchlight form-factors MODEL --no-contact-lines -o FOLDER");
+    throw InputError(arguments.form_factors.string(),
+                     "the patches of these form factors follow contact lines\nhint: leave --no-contact-lines out");
   request.mesh.contact_lines = info.contact_lines;
   request.mesh.contact_line_count = info.contact_line_count;
   if (request.mesh.graded_edges && !info.graded_edges)
-    throw InputError(
-        arguments.form_factors.string(),
-        "found even patches, with --graded-edges; leave that out, or compute the form factors again with it: "
-        "patchlight form-factors MODEL --graded-edges -o FOLDER");
+    throw InputError(arguments.form_factors.string(),
+                     "the patches of these form factors are not graded\nhint: leave --graded-edges out");
   request.mesh.graded_edges = info.graded_edges;
   request.assembly.seed = info.seed;
   if (info.storage == Storage::rays) {
     request.assembly.rays = info.rays;
     const Solver solver = request.solver.solver;
     if (arguments.solver_given && (takes_rows(solver) || takes_reciprocity(solver)))
-      throw InputError(arguments.form_factors.string(), std::string("found rows of rays with --solver ") +
-                                                            name_of(solver) +
-                                                            "; they need gmres, bicgstab, jacobi or chebyshev");
+      throw InputError(arguments.form_factors.string(),
+                       std::string("form factors by rays cannot be used with --solver ") + name_of(solver) +
+                           "\nhint: --solver gmres, bicgstab, jacobi or chebyshev");
     return by_rays(std::move(request));
   }
   request.assembly.samples = info.samples;
@@ -101,11 +98,9 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
     request.effects.force.push_back(Effect::closure);
     return request;
   }
-  throw InputError(
-      arguments.form_factors.string(),
-      "found form factors whose rows are closed (" + info.closure +
-          "); expected them as computed, without closure. Compute them again: patchlight form-factors MODEL "
-          "--no-closure -o FOLDER");
+  throw InputError(arguments.form_factors.string(),
+                   "these form factors are closed, but --no-closure needs them without closure\n"
+                   "hint: compute them again: patchlight form-factors MODEL --no-closure -o FOLDER");
 }
 
 }  // namespace
@@ -138,6 +133,23 @@ SolveInput read_input(const SolveArguments& arguments) {
     return exchange;
   };
   return input;
+}
+
+Scene with_points(Scene scene, const SolveArguments& arguments) {
+  if (arguments.points.empty()) return scene;
+  require_within(arguments.read.confine, arguments.points, "--points");
+  scene.sensors.push_back(read_points(arguments.points, scene.metres_per_unit));
+  return scene;
+}
+
+std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene) {
+  if (!scene.sensors.empty()) {
+    if (!arguments.points_outputs.empty()) return arguments.points_outputs;
+    return {arguments.default_points_output};
+  }
+  if (arguments.points_outputs.empty()) return {};
+  throw InputError("--points-output",
+                   "the scene file has no sensors\nhint: add a table [[sensors]], or give --points FILE");
 }
 
 }  // namespace patchlight::cli

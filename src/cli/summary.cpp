@@ -3,7 +3,6 @@
 #include "base/rounded.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/step_in_words.h"
 #include "cli/text_table.h"
 #include "light/colour.h"
 
@@ -14,6 +13,17 @@
 
 namespace patchlight::cli {
 namespace {
+
+// Where no bound on it is known, the error does not have it.
+std::string solver_in_words(const AccuracyStep& step) {
+  return std::isfinite(step.solver) ? percent(step.solver, 1) : "unknown";
+}
+
+// The parts of the error, each in percent.
+std::string parts(const AccuracyStep& step) {
+  return "mesh " + percent(step.mesh, 2) + ", form factors " + percent(step.form_factor, 2) + ", solver " +
+         solver_in_words(step);
+}
 
 // Values per band, for three bands as R, G, B.
 std::string bands(const Eigen::ArrayXd& values) {
@@ -44,14 +54,13 @@ std::string errors(const Report& report) {
   std::string on;
   for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
   const AccuracyStep& step = report.accuracy.back();
-  if (step.inside) on = " inside";
-  std::string text = "error of the patches' means" + on + " about " + errors_in_words(step);
+  if (step.inside) on = " (indoors)";
+  std::string text = "estimated error" + on + ": " + errors_in_words(step);
   for (const auto& [space, part] : report.spaces) {
     if (step.inside && space == "inside") continue;
     const bool is_dark = part.mesh == 0 && part.form_factor == 0 && part.solver == 0 && part.display == 0;
     text += "\n  " + space + ", " + std::to_string(part.patches) + " patches, " +
-            (is_dark ? "which reflect no light: none gets there, or all of it is absorbed"
-                     : "of the light that is reflected there: " + errors_in_words(part));
+            (is_dark ? "which reflect no light" : "relative to the light reflected there: " + errors_in_words(part));
   }
   return text;
 }
@@ -62,11 +71,10 @@ std::string advice_on_errors(const Report& report) {
   const AccuracyStep& step = report.accuracy.back();
   if (refines(report.plan.accuracy) || !(known_error(step) > large)) return {};
   const bool by_rays = report.plan.assembly.storage == Storage::rays;
-  return std::string("that is much; ") +
-         (step.mesh >= step.form_factor ? "more --patches make it smaller, or --accuracy where they pay"
-          : by_rays                     ? "more --rays make it smaller"
-                                        : "more --samples make it smaller, and more --patches that part of "
-                                          "it which is light of luminaires, sun or sky") +
+  return std::string("hint: ") +
+         (step.mesh >= step.form_factor ? "more --patches, or --accuracy, reduce this error"
+          : by_rays                     ? "more --rays reduce this error"
+                    : "more --samples reduce this error, and more --patches the part from luminaires, sun and sky") +
          '\n';
 }
 
@@ -158,7 +166,7 @@ std::string assembly(const FormFactorFacts& facts) {
     const double rate = *facts.rays_per_second;
     text << ", " << rounded(1e-6 * rate) << " million per second";
     const double bare = facts.bare_rays_per_second;
-    if (bare > 0) text << ", " << rounded(100 * rate / bare, 2) << " % of what Embree alone does";
+    if (bare > 0) text << ", " << rounded(100 * rate / bare, 2) << " % of the rate of Embree alone";
   }
   if (facts.sampling) text << sampling(*facts.sampling);
   text << "\nrow sums before closure: " << rounded(facts.raw_row_sum->min, 6) << " to "
@@ -181,7 +189,7 @@ std::string details(const Report& report) {
   if (report.form_factors.counts) return text.str() + assembly(report.form_factors);
   if (report.plan.assembly.storage == Storage::rays)
     return text.str() + "form factors: sparse rows of " + std::to_string(rays_of_rows(report)) +
-           " rays of a patch in the mean\n";
+           " rays per patch on average\n";
   return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
 }
 
@@ -205,12 +213,12 @@ std::string sensor_lines(const Report& report, const std::string& how_to_know_er
   }
   if (!report.accuracy.empty()) return text_table(rows);
   return text_table(rows) +
-         "standard errors of sensors hold a guess, in pockets, behind slits and by louvres a tenth of the truth or "
-         "less, of what the size of the patches errs" +
+         "the mesh part of the sensors' standard errors is only an estimate; behind slits and louvres it can be ten "
+         "times too small" +
          how_to_know_errors + '\n';
 }
 
-// "effects: occlusion, closure; left out: colour, sun; by force: closure"
+// "effects: occlusion, closure; left out: colour, sun; by option: closure"
 std::string effects_line(const std::vector<Decision>& decisions) {
   std::string on, off, forced;
   for (const Decision& decision : decisions) {
@@ -219,7 +227,7 @@ std::string effects_line(const std::vector<Decision>& decisions) {
     if (decision.forced) forced += (forced.empty() ? "" : ", ") + std::string(name_of(decision.effect));
   }
   return "effects: " + (on.empty() ? "none" : on) + (off.empty() ? "" : "; left out: " + off) +
-         (forced.empty() ? "" : "; by force: " + forced) + '\n';
+         (forced.empty() ? "" : "; by option: " + forced) + '\n';
 }
 
 }  // namespace
@@ -240,7 +248,7 @@ void print_notes(const std::vector<std::string>& notes, bool quiet) {
 // An axis that was guessed: the model's floors may be walls.
 std::string upright(const SceneFacts& scene) {
   if (scene.up_stated) return "";
-  return std::string(scene.up.y() > scene.up.z() ? "y" : "z") + " taken to be upright, ";
+  return std::string(scene.up.y() > scene.up.z() ? "y" : "z") + " is the vertical axis (guessed), ";
 }
 
 std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors) {
@@ -255,10 +263,9 @@ std::string summary(const Report& report, bool long_form, const std::string& how
   if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n' << advice_on_errors(report);
   if (report.accuracy.empty() && report.form_factors.ray_error)
     text << "error of the rays: " << percent(*report.form_factors.ray_error, 2)
-         << " % of the reflected light, which more rays make smaller; what the size of the patches errs is not known"
-         << how_to_know_errors << '\n';
+         << " % of the reflected light; the error of the mesh is not known" << how_to_know_errors << '\n';
   else if (report.accuracy.empty())
-    text << "errors from the size of the patches and from form factors: not known" << how_to_know_errors << '\n';
+    text << "errors of mesh and form factors: not known" << how_to_know_errors << '\n';
   if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
   text << energy(report) << '\n' << seconds(report.costs) << '\n';
   return text.str() + sensor_lines(report, how_to_know_errors);
@@ -278,24 +285,23 @@ std::string explain_not_accurate(const Report& report) {
   const bool by_solver = step.solver > std::max(step.mesh, step.form_factor);
   if (!std::isfinite(step.solver)) {
     return "accuracy of " + percent(*report.plan.accuracy.relative_error, 3) +
-           " % NOT known to be reached: no bound on the solver's error is known, as somewhere next to nothing is "
-           "absorbed. Lower the largest reflectance, " +
+           " % NOT known to be reached: the solver has no error bound, since almost nothing is absorbed\n"
+           "hint: lower the largest reflectance, " +
            rounded(report.solution.highest_reflectance, 6);
   }
   std::string text = "accuracy of " + percent(*report.plan.accuracy.relative_error, 3) +
                      " % NOT reached: the error is about " + percent(step.total, 2) + " % after " +
-                     rounded(step.seconds) + " s; most of it is from the " +
+                     rounded(step.seconds) + " s, mainly from the " +
                      (by_solver ? "solver"
                       : by_mesh ? "size of the patches"
                                 : "sampling of form factors") +
-                     ". ";
-  if (by_solver) return text + "Give a smaller --tolerance, or none: then it is what the accuracy takes";
-  if (report.plan.accuracy.seconds) return text + "Give a longer --time-limit, or more --memory if it ended before";
-  return text + (by_mesh ? "Begin with more --patches"
+                     "\nhint: ";
+  if (by_solver) return text + "leave --tolerance out, or give a smaller one";
+  if (report.plan.accuracy.seconds) return text + "a longer --time-limit, or more --memory if the run ended earlier";
+  return text + (by_mesh ? "start with more --patches"
                  : report.plan.assembly.storage == Storage::rays
-                     ? "Begin with more --rays, unless it is of luminaires, sun or sky (error_direct_irradiance); "
-                       "a lamp that nearly touches a surface takes very many"
-                     : "Begin with more --samples, unless it is of luminaires, sun or sky (error_direct_irradiance)");
+                     ? "start with more --rays; a lamp close to a surface needs very many"
+                     : "start with more --samples");
 }
 
 std::string explain_unfinished(const Report& report) {
@@ -308,8 +314,7 @@ std::string explain_unfinished(const Report& report) {
   } else {
     what = wants_errors ? "the solution of the first mesh, whose errors are not known yet" : "the solution";
   }
-  return "UNFINISHED, as the run was stopped: the files have " + what +
-         ", without sensors and pictures that were not ready";
+  return "UNFINISHED, since the run was stopped: the files have " + what + ", without unfinished sensors and images";
 }
 
 std::string explain_not_converged(const Report& report) {
@@ -318,23 +323,36 @@ std::string explain_not_converged(const Report& report) {
   if (!solution.trapped.empty()) return "not solved: " + solution.trapped;
   if (solution.stopped_by_rows) {
     return convergence(report) + ": stopped after " + percent(*plan.solver.max_rows, 3) +
-           " % of the rows of form factors, as asked for. A picture shows an estimate of the light still under way, "
-           "other results what has arrived";
+           " % of the rows of form factors, as requested. Images include an estimate of the remaining light, other "
+           "results do not";
   }
   const std::string asked = "NOT converged to " + rounded(tolerance_of(plan.solver), 2) + ". ";
   const Iteration& last = solution.history.back();
   constexpr double rounding = 1e-13;
   if (last.relative_residual < rounding) {
-    return asked + "The residual has come down to rounding: no solver gets nearer; give a larger --tolerance";
+    return asked + "The residual is at rounding level\nhint: a larger --tolerance";
   }
   std::string advice = std::to_string(plan.solver.max_iterations) +
-                       " iterations are too few for this solver: try a larger --max-iterations or --tolerance";
+                       " iterations are too few for this solver\nhint: a larger --max-iterations or --tolerance";
   constexpr double nearly_all = 0.99;
   if (solution.highest_reflectance > nearly_all) {
-    advice += "; or lower the largest reflectance, " + rounded(solution.highest_reflectance, 6) +
-              ", with --set: light hardly gets lost";
+    advice += "\nhint: or lower the largest reflectance, " + rounded(solution.highest_reflectance, 6) + ", with --set";
   }
   return asked + advice;
+}
+
+double known_error(const AccuracyStep& step) {
+  return std::isfinite(step.solver) ? step.total : std::hypot(step.mesh, step.form_factor);
+}
+
+std::string errors_in_words(const AccuracyStep& step) {
+  return percent(known_error(step), 2) + " % (" + parts(step) + ")" +
+         "; variation within patches: " + percent(step.display, 2) + " %";
+}
+
+std::string step_in_words(const AccuracyStep& step) {
+  return std::to_string(step.patches) + " patches, " + percent(known_error(step), 2) + " % (" + parts(step) + "), " +
+         rounded(step.seconds) + " s";
 }
 
 }  // namespace patchlight::cli

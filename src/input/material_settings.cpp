@@ -112,8 +112,9 @@ std::string advice_on_flux(const std::string& quantity) {
   constexpr std::array words{"flux", "luminous_flux", "lumens", "lumen", "lm", "watts", "watt", "W", "power"};
   if (std::find(words.begin(), words.end(), quantity) == words.end()) return {};
   const std::string efficacy = shortest(luminous_efficacy);
-  return ". A lamp of F lumens whose faces measure A m^2 has the exitance F / (" + efficacy +
-         " A), one of P watts P / A; luminaires of a scene file take lumens or watts";
+  return "\nhint: exitance = lumens / (" + efficacy +
+         " x area in m^2), or watts / area"
+         "\nhint: luminaires of a scene file take lumens or watts";
 }
 
 Quantity quantity_named(const std::string& name, const std::string& text) {
@@ -129,9 +130,9 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
 
 // What a value of a quantity is.
 const char* expected_value(Quantity quantity) {
-  if (is_share(quantity)) return "a share from 0 to 1, or in percent, as 30%";
-  if (quantity == Quantity::exitance) return "W/m^2 without the unit, as 10";
-  if (quantity == Quantity::radiance) return "W/(m^2 sr) without the unit, as 10";
+  if (is_share(quantity)) return "a share from 0 to 1, or in percent, e.g. 30%";
+  if (quantity == Quantity::exitance) return "W/m^2 without the unit, e.g. 10";
+  if (quantity == Quantity::radiance) return "W/(m^2 sr) without the unit, e.g. 10";
   return expected_index;
 }
 

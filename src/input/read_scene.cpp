@@ -149,23 +149,23 @@ Spectrum irradiance_for(double illuminance) { return Spectrum::Constant(1, illum
 // What cannot be together, or is missing.
 void require_consistent(const DaylightSetting& setting) {
   if (setting.weather && (setting.sky || setting.sun))
-    throw InputError("read.daylight.weather", std::string("found with ") +
+    throw InputError("read.daylight.weather", std::string("cannot be used with ") +
                                                   (setting.sky ? "read.daylight.sky" : "read.daylight.sun") +
-                                                  "; a weather file has both sun and sky: leave one of the two out");
+                                                  ": a weather file has both sun and sky");
   if (setting.ground_reflectance && !setting.sky && !setting.weather)
     throw InputError("read.daylight.ground",
-                     "found without a sky; the ground is lit by one: add read.daylight.sky=overcast:10000lx");
+                     "needs a sky, which lights the ground\nhint: read.daylight.sky=overcast:10000lx");
   const bool needs_sun = setting.sky == SkyKind::cie_clear || setting.sky == SkyKind::perez;
   if (needs_sun && !setting.sun)
     throw InputError("read.daylight.sky",
-                     "found a sky that is brightest around the sun, without a sun; say where it stands, as in "
-                     "read.daylight.sun=2024-06-21T12:00:00Z@52.5,13.4 or read.daylight.sun=40,180");
+                     "this sky needs the position of the sun\n"
+                     "hint: read.daylight.sun=40,180 or read.daylight.sun=2024-06-21T12:00:00Z@52.5,13.4");
   const bool shapes_only = setting.sun && !(setting.sun_illuminance > 0) && !needs_sun;
   if (shapes_only)
-    throw InputError("read.daylight.sun",
-                     "found no strength; expected one in lx across its rays, as in read.daylight.sun=40,180:80000lx");
+    throw InputError("read.daylight.sun", "direct normal illuminance missing\nhint: read.daylight.sun=40,180:80000lx");
   if (setting.measured && setting.sun_illuminance > 0)
-    throw InputError("read.daylight.sun", "found a strength, which is known from what was measured; leave it out");
+    throw InputError("read.daylight.sun",
+                     "this sky already states the illuminance of the sun\nhint: leave it out of read.daylight.sun");
 }
 
 SunEntry sun_entry(const DaylightSetting& setting) {
@@ -248,10 +248,9 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
   const bool is_y = std::abs(scene.up.y()) > 0.5;
   scene.problems.push_back({ProblemKind::guessed_up,
                             1,
-                            std::string("no file states the upright axis, and ") + part + " depends on it; " +
-                                (is_y ? "y" : "z") +
-                                " is a guess by the areas of faces. Give read.up=" + (is_y ? "y" : "z") +
-                                " if it is right, else read.up=" + (is_y ? "z" : "y") + "; a scene file has the key up",
+                            std::string("no file states the vertical axis, and ") + part + " depends on it; " +
+                                (is_y ? "y" : "z") + " is a guess by the areas of faces\nhint: read.up=" +
+                                (is_y ? "y" : "z") + " if it is right, else read.up=" + (is_y ? "z" : "y"),
                             {}});
   return scene;
 }
@@ -277,7 +276,7 @@ SceneFile scene_file(const std::filesystem::path& file, const ReadOptions& optio
     return read_scene_file(file, options.confine);
   }
   throw InputError("read.metres_per_unit",
-                   "a scene file states its units itself, with the keys unit; leave it out for " + file.string());
+                   "cannot be used with a scene file, which states its units with the key unit: " + file.string());
 }
 
 FileModel read_entry(const ModelEntry& model, const std::filesystem::path& confine, RadianceModifiers known) {

@@ -74,7 +74,7 @@ double middle_of(const Bracket& bracket) {
 
 double possible(std::size_t patches) {
   const double wanted = static_cast<double>(std::max<std::size_t>(patches, 1));
-  if (wanted > max_patches) throw MemoryError("found a wish for over 2^31 patches; expected fewer");
+  if (wanted > max_patches) throw MemoryError("mesh.patches: too many (limit 2^31)");
   return wanted;
 }
 

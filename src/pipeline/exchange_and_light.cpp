@@ -133,10 +133,10 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
   const std::optional<PolygonIndex> other = is_as_long ? other_kind(known.specular_kinds, now) : 0;
   if (!other) return;
   throw InputError("given.ray_rows",
-                   "found rows of rays that go on in another way from polygon " + std::to_string(*other + 1) + " of '" +
+                   "the glazing or mirrors have changed since these form factors were computed (face " +
+                       std::to_string(*other + 1) + " of '" +
                        run.scene.materials[run.scene.polygons[*other].material].name +
-                       "' than light does now; expected the clear faces and mirrors of then, with the same index of "
-                       "refraction: only their colours may differ. Compute the form factors again");
+                       "'); only colors may change\nhint: compute them again: patchlight form-factors MODEL -o FOLDER");
 }
 
 }  // namespace

@@ -93,9 +93,9 @@ std::vector<LampSide> new_lamps(const Run& run, const PatchMesh& mesh, const Rad
     pieces += piece_count(run.scene, lamp.side);
   }
   if (pieces > most_new_pieces)
-    throw InputError("given.ray_rows", "found rows of rays that were traced when " + std::to_string(lamps.size()) +
-                                           " of the lamps were dark: too many to trace them alone. Compute the form "
-                                           "factors again, with these lamps lit");
+    throw InputError("given.ray_rows",
+                     "too many lamps were dark when these form factors were computed: " + std::to_string(lamps.size()) +
+                         "\nhint: compute them again with these lamps lit");
   return lamps;
 }
 

@@ -29,11 +29,11 @@ std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracySte
 
 void refuse(const Plan& plan, const Needed& needed) {
   const auto& [patches, reachable] = needed;
-  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) +
-                    "%: found that it takes about " + std::to_string(static_cast<long>(patches)) + " patches and " +
+  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) + "% needs about " +
+                    std::to_string(static_cast<long>(patches)) + " patches and " +
                     gigabytes(memory_needed(static_cast<std::size_t>(patches), plan)) + ", and " +
-                    gigabytes(usable_memory(plan.resources)) + " may be taken; expected about " +
-                    percent(reachable, 2) + "% or more: ask for that, or for an accuracy.interest");
+                    gigabytes(usable_memory(plan.resources)) + " is allowed\nhint: accuracy.relative_error=" +
+                    percent(reachable, 2) + "% or more\nhint: or improve a part only: accuracy.interest");
 }
 
 }  // namespace patchlight

@@ -74,8 +74,7 @@ void require_alone(const Asked& one, std::initializer_list<Asked> others, const 
   if (!one.is_asked) return;
   for (const Asked& other : others) {
     if (!other.is_asked) continue;
-    throw InputError(one.part,
-                     "found with " + other.part + "; they exclude each other, as " + why + ". Give one of them");
+    throw InputError(one.part, "cannot be used with " + other.part + ": " + why);
   }
 }
 
@@ -86,29 +85,30 @@ void require_one_patch_size(const MeshOptions& mesh) {
 
 void require_consistent_effects(const Request& request, const Given& given) {
   for (const Effect effect : request.effects.force)
-    require_alone(skipped(request, effect), {forced(request, effect)}, "an effect is simulated or left out");
+    require_alone(skipped(request, effect), {forced(request, effect)}, "an effect is either simulated or left out");
   const auto decides = [&](Effect effect, const Asked& other, const std::string& why) {
     for (const Asked& asked : {forced(request, effect), skipped(request, effect)}) require_alone(asked, {other}, why);
   };
   const MeshOptions& mesh = request.mesh;
   for (const Effect effect : {Effect::reach, Effect::backs}) {
     decides(effect, {std::string("mesh.sides=") + name_of(mesh.sides), mesh.sides != Sides::automatic},
-            "that says already which sides take part");
-    decides(effect, {"mesh.kept_sides", mesh.kept_sides.has_value()}, "these are all that take part");
+            "that option already chooses the sides");
+    decides(effect, {"mesh.kept_sides", mesh.kept_sides.has_value()}, "only the stored sides are simulated");
   }
   for (const Asked& known : {form_factors(given), ray_rows(given)})
-    decides(Effect::occlusion, known, "form factors that are given decide it");
+    decides(Effect::occlusion, known, "stored form factors decide it");
   require_alone(forced(request, Effect::closure), {not_closed(request)}, "one closes the rows and the other does not");
-  require_alone(forced(request, Effect::closure), {on_demand(request)}, "rows on demand cannot be closed");
-  require_alone(forced(request, Effect::closure), {rows_of_rays(request)}, "rows of rays are closed one by one");
+  require_alone(forced(request, Effect::closure), {on_demand(request)}, "form factors on demand cannot be closed");
+  require_alone(forced(request, Effect::closure), {rows_of_rays(request)}, "the ray method closes each row by itself");
   require_alone(forced(request, Effect::mirrors), {tiles(request), on_demand(request)},
-                "form factors of pairs do not see by way of mirrors");
+                "the pair method does not follow light over mirrors");
 }
 
 void require_solver_for(const Request& request) {
-  require_alone(rows_of_rays(request), {max_rows(request)}, "rows of rays are not taken one at a time");
+  require_alone(rows_of_rays(request), {max_rows(request)}, "the ray method does not compute single rows");
   const Solver solver = request.solver.solver;
-  const std::string found = std::string("found with solver.solver=") + name_of(solver) + "; it needs solver.solver=";
+  const std::string found =
+      std::string("cannot be used with solver.solver=") + name_of(solver) + "\nhint: solver.solver=";
   if (request.solver.relaxation && solver != Solver::sor)
     throw InputError("solver.relaxation", found + name_of(Solver::sor));
   for (const Asked& asked : {max_rows(request), on_demand(request)}) {
@@ -119,7 +119,7 @@ void require_solver_for(const Request& request) {
   if (rows_of_rays(request).is_asked && (takes_rows(solver) || takes_reciprocity(solver)))
     throw InputError(rows_of_rays(request).part, found + "gmres, bicgstab, jacobi or chebyshev");
   if (request.solver.reference)
-    throw InputError("solver.reference", "found a solution to be met; before there is a mesh expected none");
+    throw InputError("solver.reference", "must be empty: a reference needs the mesh of the run");
 }
 
 // Conjugate gradients stand where nothing is asked for: the plan takes gmres for them.
@@ -129,8 +129,9 @@ void require_solver_for_sheets(const Request& request, const Scene& scene) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (!is_sheet(scene, p)) continue;
     throw InputError(std::string("solver.solver=") + name_of(solver),
-                     "found with a translucent sheet of material '" + scene.materials[scene.polygons[p].material].name +
-                         "', the sides of which do not scatter each by itself; expected gmres, bicgstab or jacobi");
+                     "cannot solve a translucent sheet, of material '" +
+                         scene.materials[scene.polygons[p].material].name +
+                         "'\nhint: solver.solver=gmres, bicgstab or jacobi");
   }
 }
 
@@ -138,22 +139,22 @@ void require_solver_for_sheets(const Request& request, const Scene& scene) {
 // place of any estimator.
 void require_rows_possible(const Request& request, const Given& given) {
   const Asked rows = on_demand(request);
-  require_alone(not_closed(request), {rows}, "rows on demand are never closed");
-  require_alone(other_estimator(request), {rows}, "rows on demand are found by the automatic one");
-  require_alone(form_factors(given), {rows, rows_of_rays(request)}, "these are a matrix");
+  require_alone(not_closed(request), {rows}, "form factors on demand are never closed");
+  require_alone(other_estimator(request), {rows}, "form factors on demand need the automatic estimator");
+  require_alone(form_factors(given), {rows, rows_of_rays(request)}, "stored form factors are not computed again");
   require_alone(rows_of_rays(request), {not_closed(request), skipped(request, Effect::closure)},
-                "rows of rays are closed one by one");
+                "the ray method closes each row by itself");
   require_alone(rows_of_rays(request),
                 {other_estimator(request), short_cuts(request), kept_errors(request), samples(request)},
-                "rays take the place of pairs");
+                "these belong to the pair method");
   if (rays(request).is_asked && !rows_of_rays(request).is_asked)
-    throw InputError("assembly.rays", std::string("found with assembly.storage=") + name_of(request.assembly.storage) +
-                                          "; it needs assembly.storage=rays");
+    throw InputError("assembly.rays", std::string("cannot be used with assembly.storage=") +
+                                          name_of(request.assembly.storage) + "\nhint: assembly.storage=rays");
 }
 
 void require_automatic_estimator(const Request& request) {
-  require_alone(short_cuts(request), {other_estimator(request)}, "that takes no short cuts");
-  require_alone(kept_errors(request), {other_estimator(request)}, "that does not know the errors of entries");
+  require_alone(short_cuts(request), {other_estimator(request)}, "only the automatic estimator has shortcuts");
+  require_alone(kept_errors(request), {other_estimator(request)}, "only the automatic estimator knows these errors");
 }
 
 // What leaves no error bars, and why.
@@ -165,25 +166,25 @@ struct Obstacle {
 // Error bars take the closed matrix of the automatic estimator, made in the run, and the solution to be exact but for
 // the solver's error.
 std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Given& given) {
-  const char* const found_in_the_run = "error bars take the errors of form factors, found and kept in the run";
-  const char* const closed = "error bars are those of closed rows";
+  const char* const found_in_the_run = "error bars need form factors that are computed in this run";
+  const char* const closed = "error bars need closure";
   return {{on_demand(request), found_in_the_run},
           {form_factors(given), found_in_the_run},
-          {ray_rows(given), "error bars of the mesh take further rays, and none is traced"},
-          {mesh_of(given), "error bars take a nested mesh"},
+          {ray_rows(given), "error bars need further rays, which stored form factors do not allow"},
+          {mesh_of(given), "error bars need a nested mesh"},
           {not_closed(request), closed},
           {skipped(request, Effect::closure), closed},
-          {skipped(request, Effect::interreflection), "error bars are those of reflected light"},
-          {other_estimator(request), "error bars take the errors that the automatic one knows"},
-          {max_rows(request), "error bars are those of a solution that has converged"}};
+          {skipped(request, Effect::interreflection), "error bars need interreflection"},
+          {other_estimator(request), "error bars need the automatic estimator"},
+          {max_rows(request), "error bars need a converged solution"}};
 }
 
 void require_error_bars_possible(const Request& request, const Given& given) {
   const Asked bars = error_bars(request.accuracy);
   if (!bars.is_asked && !request.accuracy.interest.empty()) {
-    throw InputError("accuracy.interest",
-                     "found without an error that it could be of; it needs "
-                     "accuracy.relative_error, accuracy.seconds or accuracy.error_bars");
+    throw InputError(
+        "accuracy.interest",
+        "needs an error to minimize\nhint: accuracy.relative_error, accuracy.seconds or accuracy.error_bars");
   }
   for (const auto& [asked, why] : obstacles_to_error_bars(request, given)) require_alone(bars, {asked}, why);
 }
@@ -219,11 +220,9 @@ void require_rays_for_colours(std::size_t coloured, const Request& chosen, const
   // Without such a part pairs are taken for error bars of light that nothing reflects, and for form factors alone.
   const Asked bars = error_bars(asked.accuracy);
   const std::string part = part_that_takes_pairs(asked, given).value_or(bars.is_asked ? bars.part : "assembly.storage");
-  throw InputError(part, "found with " + std::to_string(coloured) +
-                             (coloured == 1 ? " clear or mirroring material" : " clear or mirroring materials") +
-                             " of different values in different bands. Form factors of pairs have one value for all "
-                             "bands. Use assembly.storage=rays" +
-                             (part == "assembly.storage=tiles" || part == "assembly.storage" ? "" : " instead"));
+  throw InputError(part, "cannot be used with colored glazing or mirrors, here " + std::to_string(coloured) +
+                             (coloured == 1 ? " material" : " materials") +
+                             ": the pair method has one value for all bands\nhint: assembly.storage=rays");
 }
 
 std::optional<std::string> part_without_error_bars(const Request& request, const Given& given) {

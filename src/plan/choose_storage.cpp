@@ -43,16 +43,13 @@ bool has_coarse_sides(const StoredLight& light, const Request& request) {
 }
 
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
-  if (light.is_mirrored)
-    return "as only they follow light that mirrors and clear faces reflect, and tell its colours apart";
-  if (light.has_goal) return "as patches follow a goal: pairs take as long for the surroundings as for the goal";
+  if (light.is_mirrored) return "which follow light over glazing and mirrors in each band";
+  if (light.has_goal) return "because the patches are concentrated on a goal";
   if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
-    return "as " + std::to_string(light.sides) +
-           " sides of faces have few patches each: the size of these errs more than rays do, and pairs would take much "
-           "longer";
+    return "because " + std::to_string(light.sides) + " sides of faces have few patches each: pairs would take longer";
   const bool fits = bytes <= usable_memory(request.resources);
-  return "as all pairs of " + std::to_string(light.patches) + " patches would take " + gigabytes(bytes) +
-         (fits ? " and much longer" : ", and " + gigabytes(usable_memory(request.resources)) + " may be taken");
+  return "because all pairs of " + std::to_string(light.patches) + " patches need " + gigabytes(bytes) +
+         (fits ? " and more time" : ", and " + gigabytes(usable_memory(request.resources)) + " is allowed");
 }
 
 }  // namespace
@@ -99,8 +96,8 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const bool is_small = light.patches <= most_patches_with_more_rays;
   if (replaces_pairs || ((light.is_mirrored || light.has_goal) && is_small))
     chosen.request.assembly.rays = rays_replacing_pairs;
-  chosen.note = "form factors are rows of rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
-                "; assembly.storage=tiles takes pairs";
+  chosen.note = "form factors are sampled by rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
+                "\nhint: assembly.storage=tiles computes all pairs instead";
   return chosen;
 }
 

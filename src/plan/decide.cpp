@@ -183,7 +183,7 @@ Decision mirrors(const EffectFacts& facts, const Request& request) {
   if (request.assembly.storage != Storage::rays)
     return {Effect::mirrors, false,
             "form factors of pairs do not see by way of mirrors (" + what +
-                "): what these reflect counts as absorbed; assembly.storage=rays follows it",
+                "): light that these reflect counts as absorbed; assembly.storage=rays follows it",
             "rows of rays instead of pairs"};
   return overruled({Effect::mirrors, true, "light is reflected without being scattered, by " + what,
                     "a ray more for each time that a ray is reflected"},

@@ -6,7 +6,7 @@ namespace patchlight {
 namespace {
 
 const char* word_for(const Decision& decision) {
-  if (decision.forced) return decision.simulate ? "simulated by force" : "skipped by force";
+  if (decision.forced) return decision.simulate ? "enabled by option" : "disabled by option";
   return decision.simulate ? "simulated" : "left out";
 }
 

@@ -39,25 +39,21 @@ std::string setting_for(const LampHint& hint) {
 }
 
 std::string advice_on_lamps(const std::vector<LampHint>& hints) {
-  if (hints.empty()) return "no material emits, and none looks like a lamp";
-  std::string advice = "no material emits";
+  std::string advice;
   for (std::size_t k = 0; k < std::min(most_hints, hints.size()); ++k) {
-    advice += "; '" + hints[k].material + "' looks like a lamp (" + hints[k].reason + "): " + setting_for(hints[k]) +
-              " switches it on";
+    advice +=
+        "\nhint: '" + hints[k].material + "' looks like a lamp (" + hints[k].reason + "): " + setting_for(hints[k]);
   }
   return advice;
 }
 
 std::string advice_on_other_light(const Scene& scene, const std::optional<Solid>& hull) {
   if (hull && is_room(scene, *hull)) {
-    return "; no daylight gets into the room (" + place_of(scene, scene.polygons[hull->polygons.front()]) +
-           "), as no face of it lets light through: let patchlight init MODEL -o SCENE.toml write a scene file with a "
-           "luminaire in it (docs/lights.md)";
+    return "\nhint: the room has no window (" + place_of(scene, scene.polygons[hull->polygons.front()]) +
+           "); create a scene with a lamp: patchlight init MODEL -o SCENE.toml";
   }
-  return std::string("; for daylight ") + (hull ? "from outside, as no face of the model lets light through, " : "") +
-         "add " + usual_sky +
-         ", or let patchlight init MODEL -o SCENE.toml write a scene file to change (luminaires stand there, too: "
-         "docs/lights.md)";
+  return std::string("\nhint: add daylight") + (hull ? " from outside: " : ": ") + usual_sky +
+         "\nhint: create a scene with lamps or daylight: patchlight init MODEL -o SCENE.toml";
 }
 
 }  // namespace
@@ -66,14 +62,14 @@ FirstLight first_light(const Scene& scene) {
   const std::optional<Solid> hull = sealed_hull(scene);
   const std::vector<LampHint> hints = possible_lamps(scene);
   FirstLight light;
-  light.advice = advice_on_lamps(hints) + advice_on_other_light(scene, hull);
+  light.advice = "no material emits" + advice_on_lamps(hints) + advice_on_other_light(scene, hull);
   const bool is_sealed = hull && is_room(scene, *hull);
   if (!is_sealed) light.setting = usual_sky;
   if (is_sealed && !hints.empty()) light.setting = setting_for(hints.front());
   if (!hints.empty()) return light;
   std::vector<std::string> names;
   for (const Material& material : scene.materials) names.push_back(material.name);
-  light.advice += "; or choose a lamp with read.settings MATERIAL.radiance=R,G,B from " + first_few(names);
+  light.advice += "\nhint: make a material emit, one of " + first_few(names) + ": read.settings MATERIAL.radiance=10";
   return light;
 }
 

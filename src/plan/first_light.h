@@ -9,7 +9,7 @@ namespace patchlight {
 /// What lights a scene in which nothing emits.
 struct FirstLight {
   std::string setting;  ///< of a request, as read.daylight.sky=overcast:10000lx; empty: it takes a scene file
-  std::string advice;   ///< all that can light it, `setting` among it, in one sentence
+  std::string advice;   ///< all that can light it, `setting` among it, a problem and a "hint: " line for each remedy
 };
 
 /// Of a room that no daylight gets into, sealed_hull(), the material that looks like a lamp, or a luminaire in a scene

@@ -6,7 +6,7 @@
 namespace patchlight {
 namespace {
 
-constexpr const char* advice = "; compute them again with the present lamps";
+constexpr const char* advice = "\nhint: compute the form factors again with the present lamps";
 
 bool is_kept(const KeptSides& kept, PolygonIndex polygon, Side side) {
   return (side == Side::front ? kept.front : kept.back)[polygon] != 0;
@@ -36,8 +36,8 @@ std::vector<std::string> dark_lamps(const Scene& scene, const KeptSides& kept) {
 std::vector<std::string> notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, Sides sides) {
   std::vector<std::string> notes;
   for (const std::string& name : dark_lamps(scene, kept)) {
-    notes.push_back("material '" + name + "' emits, but no light comes from it: its faces took no part when the form " +
-                    "factors were made" + advice);
+    notes.push_back("material '" + name + "' emits, but no light comes from it: its faces were left out of the " +
+                    "form factors" + advice);
   }
   const KeptSides now = kept_sides(scene, sides);
   std::size_t left_out = 0;

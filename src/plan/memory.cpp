@@ -120,7 +120,7 @@ std::string advice_by_rays(std::size_t patches, const Plan& plan) {
   Plan rays = plan;
   rays.assembly.storage = Storage::rays;
   if (memory_needed(patches, rays) > usable_memory(plan.resources)) return {};
-  return "take rows of rays instead with assembly.storage=rays";
+  return "\nhint: or use assembly.storage=rays";
 }
 
 }  // namespace
@@ -133,17 +133,13 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
   // Small faces take a patch each, however few are asked for.
   const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
   const std::string by_rays = advice_by_rays(patches, plan);
-  const std::string hint =
-      usable <= 2 * bytes_of_program ? "the program itself takes " + gigabytes(bytes_of_program)
-      : too_many_faces
-          ? "fewer cannot be had, as its faces alone take so many: " + (by_rays.empty() ? by_rays : by_rays + ", or ") +
-                "simplify the model, or leave objects out"
-          : "ask for at most " + std::to_string(fitting) + " patches with mesh.patches" +
-                (by_rays.empty() ? by_rays : ", or " + by_rays);
-  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) +
-                    (keeps_entries(plan.assembly.storage) ? ", most of it for their form factors, and " : ", and ") +
-                    gigabytes(usable) +
-                    (plan.resources.memory ? " may be taken (resources.memory); " : " may be taken here; ") + hint);
+  const std::string hint = usable <= 2 * bytes_of_program ? ": the program itself needs " + gigabytes(bytes_of_program)
+                           : too_many_faces
+                               ? ". Each face needs a patch\nhint: simplify the model, or leave objects out" + by_rays
+                               : "\nhint: at most mesh.patches " + std::to_string(fitting) + by_rays;
+  throw MemoryError(std::to_string(patches) + " patches need about " + gigabytes(needed) + ", and " +
+                    gigabytes(usable) + (plan.resources.memory ? " is allowed (resources.memory)" : " is available") +
+                    hint);
 }
 
 // A patch is never larger than the square of the longest edge, and each face takes one at least.

@@ -132,7 +132,7 @@ std::vector<std::string> notes_on_luminaires_behind(const Scene& scene) {
 }
 
 void require_lamp(const Scene& scene) {
-  if (!has_lamp(scene)) throw InputError(scene.file, "found no lamp: " + first_light(scene).advice);
+  if (!has_lamp(scene)) throw InputError(scene.file, "no light source: " + first_light(scene).advice);
 }
 
 // A run without any light is not meant.
@@ -146,7 +146,7 @@ void require_light(const Scene& scene, const EffectFacts& facts, const std::vect
     if (is_light && decision.forced) skipped += std::string(skipped.empty() ? "" : ", ") + name_of(decision.effect);
   }
   if (skipped.empty()) return;
-  throw InputError(scene.file, "found no light left when these are skipped: " + skipped + "; expected one at least");
+  throw InputError(scene.file, "no light source is left\nhint: keep one of those that are disabled: " + skipped);
 }
 
 bool simulates(const std::vector<Decision>& decisions, Effect effect) {
@@ -160,17 +160,15 @@ std::vector<std::string> notes_on_sun(const Scene& scene) {
   const double altitude = std::asin(std::max(-1.0, scene.sun->direction.dot(scene.up))) * 180 / std::numbers::pi;
   std::ostringstream text;
   text.precision(3);
-  text << "the sun is " << -altitude << " degrees below the horizon: it gives no light";
+  text << "the sun is " << -altitude << " degrees below the horizon and gives no light";
   return {text.str()};
 }
 
 std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
   if (facts.sheets == 0) return {};
-  return {
-      std::to_string(facts.sheets) +
-      (facts.sheets == 1 ? " face is a translucent sheet, both sides of which take"
-                         : " faces are translucent sheets, both sides of which take") +
-      " part; equations are solved by gmres, bicgstab or jacobi, as what their sides scatter depends on each other"};
+  return {std::to_string(facts.sheets) +
+          (facts.sheets == 1 ? " face is a translucent sheet" : " faces are translucent sheets") +
+          ", simulated on both sides; only the solvers gmres, bicgstab and jacobi can be used"};
 }
 
 // What solve takes rows of rays for.
@@ -179,8 +177,8 @@ std::vector<std::string> notes_on_pairs(const Scene& scene, const Request& reque
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_reflecting_pane(scene, p) || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back))
       return {
-          "form factors of pairs do not see what clear faces and mirrors reflect: that light is missing; "
-          "assembly.storage=rays follows it, as a solve does by itself"};
+          "the pair method ignores light that glazing and mirrors reflect\nhint: assembly.storage=rays, as a solve "
+          "does by itself"};
   }
   return {};
 }
@@ -194,8 +192,7 @@ std::size_t enough_patches(std::size_t asked, std::size_t least) {
 
 std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t wanted) {
   return "the model's " + std::to_string(scene.polygons.size()) + " faces take " + std::to_string(wanted) +
-         " patches, not " + std::to_string(asked) +
-         ", for its large ones to be cut as well; a simpler model takes fewer";
+         " patches, not " + std::to_string(asked) + ", so that large faces are divided as well";
 }
 
 std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {

@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "cli/arguments.h"
-#include "cli/sensors.h"
+#include "cli/solve_input.h"
 #include "mesh/nested_mesh.h"
 #include "output/report/write_plan.h"
 #include "pipeline/expected_cost.h"

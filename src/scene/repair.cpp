@@ -110,8 +110,8 @@ Scene report_far_faces(Scene scene) {
   }
   std::ostringstream does;
   does.precision(3);
-  does << "up to " << farthest << " m away from the rest of the model, which is " << main.sizes().maxCoeff()
-       << " m long: what is near is told by the rest alone; remove what is astray";
+  does << "up to " << farthest << " m from the rest of the model (" << main.sizes().maxCoeff()
+       << " m long). Tolerances follow the main part\nhint: delete the stray faces";
   return with_problem(std::move(scene), ProblemKind::implausible_size, std::move(far), does.str());
 }
 

@@ -42,14 +42,15 @@ void check_specular_reflectance(const Scene& scene, const Material& material) {
     if (share >= 0 && share + material.reflectance[band] <= 1) continue;
     throw InputError(scene.file, "material '" + material.name + "' has specular reflectance " + shortest(share) +
                                      " and reflectance " + shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
                                      material.name + ".reflectance=R,G,B");
   }
   if ((material.specular_reflectance > 0).any() && (material.transmittance > 0).any())
-    throw InputError(scene.file, "material '" + material.name +
-                                     "' has both a specular reflectance and a transmittance; expected one of them, as "
-                                     "what a clear material reflects follows from its index. Use read.settings " +
-                                     material.name + ".specular_reflectance=0");
+    throw InputError(scene.file,
+                     "material '" + material.name +
+                         "' has both a specular reflectance and a transmittance; expected one of them, since "
+                         "the index decides the reflection of a clear material\nhint: read.settings " +
+                         material.name + ".specular_reflectance=0");
 }
 
 // A sheet scatters all that it does not absorb.
@@ -59,7 +60,7 @@ void check_diffuse_transmittance(const Scene& scene, const Material& material) {
     if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
     throw InputError(scene.file, "material '" + material.name + "' has diffuse transmittance " + shortest(tau) +
                                      " and reflectance " + shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
                                      material.name + ".reflectance=R,G,B");
   }
   if (!(material.diffuse_transmittance > 0).any()) return;
@@ -67,7 +68,7 @@ void check_diffuse_transmittance(const Scene& scene, const Material& material) {
                                     std::pair(&material.specular_reflectance, "specular_reflectance")}) {
     if (!(*other > 0).any()) continue;
     throw InputError(scene.file, "material '" + material.name + "' has both a diffuse transmittance and a " + name +
-                                     "; expected one of them, as sheets scatter all that they do not absorb. Use "
+                                     "; expected one of them, as sheets scatter all that they do not absorb\nhint: "
                                      "read.settings " +
                                      material.name + "." + name + "=0");
   }
@@ -87,15 +88,15 @@ void check_sheet(const Scene& scene, PolygonIndex index) {
   throw InputError(place_of(scene, polygon), "this face has material '" + front.name + "' on its front and '" +
                                                  back.name +
                                                  "' on its back, and their diffuse transmittances differ; expected the "
-                                                 "same, as what gets through a sheet is the same both ways. Set both "
-                                                 "with read.settings MATERIAL.diffuse_transmittance=R,G,B");
+                                                 "same value on both sides\n"
+                                                 "hint: read.settings MATERIAL.diffuse_transmittance=R,G,B");
 }
 
 void check_picture(const Scene& scene, const Material& material) {
   if (!material.texture || !reflects_more_than_all(*material.texture)) return;
   throw InputError(scene.file, "material '" + material.name +
-                                   "' has a picture that reflects more than 1 in places; expected 0 to 1 everywhere. "
-                                   "Take a picture of reflectances or a smaller factor, or use read.settings " +
+                                   "' has a picture that reflects more than 1 in places; expected 0 to 1 everywhere\n"
+                                   "hint: a darker picture or a smaller factor, or read.settings " +
                                    material.name + ".reflectance=R,G,B");
 }
 
@@ -104,8 +105,8 @@ void check_material(const Scene& scene, const Material& material) {
   for (const double rho : material.reflectance) {
     if (rho >= 0 && rho <= 1) continue;
     throw InputError(scene.file, name + " has reflectance " + shortest(rho) +
-                                     "; expected 0 to 1 in every band. Mend Kd, or use read.settings " + material.name +
-                                     ".reflectance=R,G,B");
+                                     "; expected 0 to 1 in every band\nhint: fix Kd, or read.settings " +
+                                     material.name + ".reflectance=R,G,B");
   }
   check_picture(scene, material);
   for (Eigen::Index band = 0; band < material.transmittance.size(); ++band) {
@@ -113,20 +114,20 @@ void check_material(const Scene& scene, const Material& material) {
     if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
     throw InputError(scene.file, name + " has transmittance " + shortest(tau) + " and reflectance " +
                                      shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1. Use read.settings " +
+                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
                                      material.name + ".reflectance=R,G,B");
   }
   check_specular_reflectance(scene, material);
   check_diffuse_transmittance(scene, material);
   if (!(material.index >= 1 && std::isfinite(material.index))) {
     throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
-                                     "; expected a number of 1 or more. Use read.settings " + material.name +
+                                     "; expected a number of 1 or more\nhint: read.settings " + material.name +
                                      ".index=1.52");
   }
   for (const double exitance : material.exitance) {
     if (exitance >= 0 && std::isfinite(exitance)) continue;
     throw InputError(scene.file, name + " has exitance " + shortest(exitance) +
-                                     " W/m^2; expected a finite number not below 0. Mend Ke, or use read.settings " +
+                                     " W/m^2; expected a finite number not below 0\nhint: fix Ke, or read.settings " +
                                      material.name + ".exitance=R,G,B");
   }
 }
@@ -150,13 +151,14 @@ void check_polygon(const Scene& scene, PolygonIndex index) {
   double perimeter = 0;
   for (std::size_t k = 0; k < points.size(); ++k) perimeter += (points[(k + 1) % points.size()] - points[k]).norm();
   if (!(area.norm() > relative_area_tolerance * perimeter * perimeter)) {
-    throw InputError(place_of(scene, polygon), "this face has no area; remove it, or merge its repeated vertices");
+    throw InputError(place_of(scene, polygon),
+                     "this face has no area\nhint: remove it, or merge its repeated vertices");
   }
   const Vector normal = area.normalized();
   for (const Point& point : points) {
     if (std::abs(normal.dot(point - points[0])) > planarity_tolerance * perimeter) {
       throw InputError(place_of(scene, polygon),
-                       "the corners of this face do not lie in one plane; cut it into triangles");
+                       "the corners of this face do not lie in one plane\nhint: cut it into triangles");
     }
   }
 }
@@ -292,7 +294,7 @@ void check_vertices(const Scene& scene) {
     if (polygon.corners.size() > most_corners) {
       throw InputError(place_of(scene, polygon), "this face has " + std::to_string(polygon.corners.size()) +
                                                      " corners; expected at most " + std::to_string(most_corners) +
-                                                     ". Cut it into smaller faces");
+                                                     "\nhint: cut it into smaller faces");
     }
     for (const std::uint32_t corner : polygon.corners) {
       if (corner < scene.vertices.size()) continue;

@@ -101,7 +101,7 @@ class BuildingTest(ToolTest):
         run = ("solve", "box.obj", "--sky", "overcast:1000lx", "--patches", 100, "-q", "--json", "a.json")
         guessed = self.run_tool(*run)
         self.assertEqual(guessed.returncode, 0, guessed.stderr)
-        self.assertIn("warning: box.obj: no file states the upright axis, and the sky depends on it", guessed.stderr)
+        self.assertIn("warning: box.obj: no file states the vertical axis, and the sky depends on it", guessed.stderr)
         self.assertIn("--up z", guessed.stderr)
         self.assertNotIn("--up", self.run_tool(*run, "--up", "z").stderr)
         self.assertIn("guessed_up", self.run_tool("check", "box.obj", "--sky", "overcast").stdout)
@@ -129,7 +129,7 @@ class BuildingTest(ToolTest):
         self.assertIn('floor = "floor"', text)
         # EN 12464-1: cells of 0.2 * 5^log10(4) = 0.53 m over 3 m x 2 m.
         self.assertEqual(len(self.sensors_of("hall.toml")), 6 * 4)
-        self.refused(OUTPUT, ["is there already"], "init", "hall.obj", "-o", "hall.toml")
+        self.refused(OUTPUT, ["hall.toml", "exists"], "init", "hall.obj", "-o", "hall.toml")
         self.assertEqual((self.folder / "hall.toml").read_text(), text)
         self.refused(USAGE, ["patchlight init MODEL -o SCENE.toml"], "init", "hall.obj")
 

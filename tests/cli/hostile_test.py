@@ -11,7 +11,7 @@ import time
 import unittest
 import zlib
 
-from support import MATERIALS, ROOM, TOOL, ToolTest
+from support import MATERIALS, ROOM, TOOL, ToolTest, is_one_message
 
 USAGE, INPUT, NOT_CONVERGED, MEMORY, OUTPUT = 1, 2, 3, 4, 6
 
@@ -33,7 +33,7 @@ class HostileTest(ToolTest):
         done = subprocess.run([TOOL, *arguments], cwd=self.folder, capture_output=True, text=True, errors="replace",
                               timeout=20, check=False, **run)
         self.assertEqual(done.returncode, code, (arguments, done.stderr[-500:]))
-        self.assertEqual(done.stderr.count("\n"), 1, done.stderr[-500:])
+        self.assertTrue(is_one_message(done.stderr), done.stderr[-500:])
         for word in named:
             self.assertIn(word, done.stderr)
         return done

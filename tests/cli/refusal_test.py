@@ -1,7 +1,7 @@
 """What cannot be done is refused: one sentence on stderr, the documented exit code, no file touched."""
 import unittest
 
-from support import MATERIALS, ROOM, ToolTest, content
+from support import MATERIALS, ROOM, ToolTest, content, is_one_message
 
 USAGE, INPUT, MEMORY, OUTPUT = 1, 2, 4, 6
 
@@ -19,7 +19,7 @@ class RefusalTest(ToolTest):
         done = self.run_tool(*arguments)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(done.stdout, "")
-        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertTrue(is_one_message(done.stderr), done.stderr)
         self.assertTrue(done.stderr.startswith("patchlight: error: "), done.stderr)
         for word in named:
             self.assertIn(word, done.stderr)
@@ -132,17 +132,16 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["solve"])
 
     def test_a_file_in_place_of_a_command(self):
-        """The line that is meant, and what else takes a model."""
-        takers = "the commands solve, check, init, plan, form-factors, render, compare-solvers, convergence, crosscheck"
+        """The line that is meant."""
         self.write("two words.OBJ", ROOM)
         self.write("notes.txt", "")
         for words, line in ((["room.obj"], "room.obj -o room.vtp"), (["far/missing.ifc"], "far/missing.ifc -o missing.vtp"),
                             (["two words.OBJ"], "'two words.OBJ' -o 'two words.vtp'"),
                             (["room.obj", "--patches", "9", "-o", "a.ply"], "room.obj --patches 9 -o a.ply")):
             with self.subTest(line):
-                self.assert_refused(USAGE, [f"'{words[0]}'", takers + f". Did you mean: patchlight solve {line}\n"], *words)
+                self.assert_refused(USAGE, [f"'{words[0]}'", f"patchlight solve {line}\n"], *words)
         # Of a file that is there and no model the line would not be right.
-        self.assert_refused(USAGE, ["the file 'notes.txt' in place of a command", takers], "notes.txt")
+        self.assert_refused(USAGE, ["'notes.txt'"], "notes.txt")
         self.assertNotIn("Did you mean", self.run_tool("notes.txt").stderr)
 
     def test_second_model_missing(self):

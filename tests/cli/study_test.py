@@ -3,7 +3,7 @@ import csv
 import json
 import unittest
 
-from support import ToolTest, content
+from support import ToolTest, content, is_one_message
 
 GOOD, USAGE, NOT_CONVERGED, MEMORY, OUTPUT = 0, 1, 3, 4, 6
 PLOTS = ["display_error_by_cpu_second", "error_by_cpu_second", "error_by_memory", "estimators_by_cpu_second"]
@@ -67,7 +67,7 @@ class StudyTest(ToolTest):
         for words in (["--sizes", "1"], ["--tolerance", "1"], ["--estimator", "area"], ["--patches", "0"]):
             done = self.run_tool("convergence", "room.obj", "-o", "out", *words)
             self.assertEqual(done.returncode, USAGE, words)
-            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertTrue(is_one_message(done.stderr), done.stderr)
             self.assertIn(words[0], done.stderr)
         self.assertEqual(self.run_tool("convergence", "room.obj").returncode, USAGE)
 

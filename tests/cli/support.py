@@ -24,6 +24,12 @@ def run(*arguments, folder, timeout=600, text=""):
     return done
 
 
+def is_one_message(text):
+    """Whether a text is one line, and lines with hints after it."""
+    first, *others = text.splitlines()
+    return first.startswith("patchlight: ") and all(line.startswith("hint: ") for line in others)
+
+
 def content(folder):
     """Name, bytes and time of every file of a folder."""
     return {

@@ -55,7 +55,8 @@ def main(build, version, cmake, compiler):
         # What is installed is the tool, its manual and every public header, and it is moved as a whole.
         shown = subprocess.run([installed / "bin" / "patchlight", "--version"], check=True, capture_output=True, text=True)
         assert shown.stdout == f"patchlight {version}\n", shown.stdout
-        assert (installed / "share" / "man" / "man1" / "patchlight.1.gz").is_file()
+        for manual in ("patchlight.1.gz", "patchlight-solve.1.gz"):
+            assert (installed / "share" / "man" / "man1" / manual).is_file(), manual
         public = HERE.parent.parent / "include"
         for header in public.rglob("*.h"):
             assert (installed / "include" / header.relative_to(public)).is_file(), header

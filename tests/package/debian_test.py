@@ -72,7 +72,7 @@ def main(build, version, cmake, _compiler):
             assert str(packages) in said, said
         output(usr / "bin" / "patchlight", "solve", ROOT / "meshes" / "furnace_cube.obj", "--patches", 100, "-o",
                folder / "cube.glb")
-        for file in ("share/man/man1/patchlight.1.gz", "share/doc/patchlight/changelog.gz", "share/doc/patchlight/copyright", "include/patchlight/simulate.h"):
+        for file in ("share/man/man1/patchlight.1.gz", "share/man/man1/patchlight-solve.1.gz", "share/doc/patchlight/changelog.gz", "share/doc/patchlight/copyright", "include/patchlight/simulate.h"):
             assert (usr / file).is_file(), file
         pages = usr / "share" / "doc" / "patchlight-doc"
         assert (pages / "html" / "index.html").is_file() or (pages / "markdown" / "index.md").is_file()

@@ -317,7 +317,7 @@ class HoneybeeScene {
           throw InputError(scene_.file + ": " + scene_.groups.back(),
                            "a face of the mesh names vertex " + std::to_string(place) + "; expected 0 to " +
                                std::to_string(static_cast<std::int64_t>(points.size()) - 1) +
-                               ". Export the model again");
+                               "\nhint: export the model again");
         polygon.corners.push_back(first + static_cast<std::uint32_t>(place));
       }
       if (polygon.corners.size() >= 3)
@@ -462,7 +462,7 @@ Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
     scene.sha256 = sha256({&bytes, 1});
     return scene;
   } catch (const HbJson::exception& error) {
-    throw InputError(file.string(), "is not a good honeybee model: " + reason_of(error) + "; export it again");
+    throw InputError(file.string(), "is not a good honeybee model: " + reason_of(error) + "\nhint: export it again");
   }
 }
 

@@ -278,7 +278,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, double met
   const aiScene* model = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "dae");
   if (model == nullptr || model->mRootNode == nullptr) {
     throw InputError(
-        file, "is not a good dae file: " + reason_of(std::string(importer.GetErrorString())) + "; export it again");
+        file, "is not a good dae file: " + reason_of(std::string(importer.GetErrorString())) + "\nhint: export it again");
   }
   Scene scene;
   scene.file = file;

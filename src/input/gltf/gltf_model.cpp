@@ -78,7 +78,8 @@ std::string as_tinygltf_takes_it(const std::string& text) {
 }
 
 [[noreturn]] void refuse_packed(const std::string& file, const std::string& what, std::size_t index) {
-  throw InputError(file, what + " " + std::to_string(index) + " is compressed, and damaged; export the model again");
+  throw InputError(file,
+                   what + " " + std::to_string(index) + " is compressed, and damaged\nhint: export the model again");
 }
 
 std::size_t count_in(const tinygltf::Value& table, const char* key) {
@@ -280,8 +281,8 @@ bool is_known(const std::string& extension) {
 void require_known_extensions(const tinygltf::Model& model, const std::string& file) {
   for (const std::string& extension : model.extensionsRequired) {
     if (is_known(extension)) continue;
-    throw InputError(file,
-                     "requires the extension " + extension + ", which is not supported; export the model without it");
+    throw InputError(
+        file, "requires the extension " + extension + ", which is not supported\nhint: export the model without it");
   }
 }
 
@@ -392,7 +393,7 @@ template <typename Item>
 const Item& item(const std::vector<Item>& items, int index, const char* what, const std::string& file) {
   if (index < 0 || static_cast<std::size_t>(index) >= items.size()) {
     throw InputError(file, std::string("names ") + what + " " + std::to_string(index) +
-                               ", which is not in the file; export it again");
+                               ", which is not in the file\nhint: export it again");
   }
   return items[static_cast<std::size_t>(index)];
 }
@@ -422,7 +423,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   result = with_pictures(std::move(result), std::move(pictures));
   require_known_extensions(result.model, file.string());
   if (!good) {
-    throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "; export it again");
+    throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "\nhint: export it again");
   }
   result.model = decompressed(std::move(result.model), file.string());
   return result;
@@ -433,7 +434,7 @@ std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, 
   const tinygltf::Accessor& list = item(model.accessors, accessor, "accessor", file);
   const std::string name = "accessor " + std::to_string(accessor);
   if (list.sparse.isSparse || list.bufferView < 0) {
-    throw InputError(file, name + " is sparse or empty, which is not supported; export the model without that");
+    throw InputError(file, name + " is sparse or empty, which is not supported\nhint: export the model without that");
   }
   const tinygltf::BufferView& view = item(model.bufferViews, list.bufferView, "buffer view", file);
   const tinygltf::Buffer& buffer = item(model.buffers, view.buffer, "buffer", file);
@@ -448,7 +449,7 @@ std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, 
   const bool fits = value_size > 0 && list.type == expected_type && view.byteOffset <= end &&
                     list.byteOffset <= end - view.byteOffset && element <= end - view.byteOffset - list.byteOffset &&
                     list.count > 0 && list.count - 1 <= (end - view.byteOffset - list.byteOffset - element) / stride;
-  if (!fits) throw InputError(file, name + " has a wrong type or leaves its buffer; export the model again");
+  if (!fits) throw InputError(file, name + " has a wrong type or leaves its buffer\nhint: export the model again");
 
   std::vector<double> values;
   values.reserve(list.count * static_cast<std::size_t>(components));

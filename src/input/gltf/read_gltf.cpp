@@ -325,8 +325,9 @@ class GltfCollector {
     const bool exists = index >= 0 && static_cast<std::size_t>(index) < model_.nodes.size();
     // Section 3.5.2: no node is below two others. A few that are, below each other, would be added millions of times.
     if (!exists || is_added_[static_cast<std::size_t>(index)]) {
-      throw InputError(scene_.file, "node " + std::to_string(index) +
-                                        " is missing, or there twice, in the tree of nodes; export the model again");
+      throw InputError(scene_.file,
+                       "node " + std::to_string(index) +
+                           " is missing, or there twice, in the tree of nodes\nhint: export the model again");
     }
     is_added_[static_cast<std::size_t>(index)] = 1;
     const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
@@ -431,7 +432,7 @@ class GltfCollector {
     }
     for (const double index : accessor_values(model_, primitive.indices, 1, scene_.file)) {
       if (!(index >= 0 && index < vertices)) {
-        throw InputError(scene_.file, "a triangle names a vertex that is not there; export the model again");
+        throw InputError(scene_.file, "a triangle names a vertex that is not there\nhint: export the model again");
       }
       corners.push_back(static_cast<std::uint32_t>(index));
     }

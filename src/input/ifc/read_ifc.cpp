@@ -208,7 +208,8 @@ Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(file, "the output of the IFC reader is damaged: " + reason_of(error) + "; export the file again");
+    throw InputError(file,
+                     "the output of the IFC reader is damaged: " + reason_of(error) + "\nhint: export the file again");
   }
 }
 

@@ -253,7 +253,7 @@ Polygon polygon_of(const std::vector<double>& corners, const PlyBody& body) {
   polygon.line = body.line();
   for (const double corner : corners) {
     if (!(corner >= 0 && corner < no_polygon)) {
-      throw InputError(body.place(), "a face has a corner that names no vertex; export the model again");
+      throw InputError(body.place(), "a face has a corner that names no vertex\nhint: export the model again");
     }
     polygon.corners.push_back(static_cast<std::uint32_t>(corner));
   }
@@ -314,7 +314,7 @@ Scene read_ply(const std::filesystem::path& file, double metres_per_unit) {
   for (const Polygon& polygon : scene.polygons) {
     if (*std::max_element(polygon.corners.begin(), polygon.corners.end()) >= scene.vertices.size()) {
       throw InputError(polygon.line > 0 ? file.string() + ":" + std::to_string(polygon.line) : file.string(),
-                       "a face has a corner that names no vertex; export the model again");
+                       "a face has a corner that names no vertex\nhint: export the model again");
     }
   }
   scene.sha256 = sha256({&bytes, 1});

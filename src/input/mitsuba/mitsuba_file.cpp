@@ -145,9 +145,10 @@ std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute)
       if (is_it && (best == nullptr || known.first.size() > best->first.size())) best = &known;
     }
     if (best == nullptr)
-      throw InputError(place(node), "'" + std::string(said) +
-                                        "' names what no <default> before it says; add one, as <default name=\"size\" "
-                                        "value=\"1\"/>");
+      throw InputError(place(node),
+                       "'" + std::string(said) +
+                           "' names what no <default> before it says\nhint: add one, e.g. <default name=\"size\" "
+                           "value=\"1\"/>");
     result += best->second;
     at += best->first.size();
     if (result.size() > reading_limits::text_length)

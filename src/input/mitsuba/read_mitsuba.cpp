@@ -150,7 +150,7 @@ double index_in(const MitsubaFile& file, const pugi::xml_node& bsdf, const std::
   const std::optional<double> number = finite_number(stated);
   if (number && *number > 0) return *number;
   throw InputError(file.place(property),
-                   "found '" + stated + "' where an index of refraction is expected, as 1.5 or bk7");
+                   "found '" + stated + "' where an index of refraction is expected, e.g. 1.5 or bk7");
 }
 
 // Fresnel's equations square to a conductor: ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2).

@@ -343,7 +343,7 @@ std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::strin
   for (const tinyobj::shape_t& shape : shapes) faces += shape.mesh.num_face_vertices.size();
   if (!good || faces != scan.faces.size()) {
     throw InputError(file, "only " + std::to_string(faces) + " of " + std::to_string(scan.faces.size()) +
-                               " faces could be read; export the model again. " + error);
+                               " faces could be read: " + error + "\nhint: export the model again");
   }
   return shapes;
 }

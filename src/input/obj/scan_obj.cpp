@@ -115,7 +115,7 @@ void check_vertices_exist(const HighestVertex& highest, std::size_t vertices, co
   if (highest.number <= static_cast<std::int64_t>(vertices)) return;
   throw InputError(at_line(file, highest.line), "this face uses vertex " + std::to_string(highest.number) +
                                                     ", but there are " + std::to_string(vertices) +
-                                                    " vertices in the file; mend the number");
+                                                    " vertices in the file; fix the index");
 }
 
 }  // namespace

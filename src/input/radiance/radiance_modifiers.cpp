@@ -29,8 +29,9 @@ void RadianceModifiers::define(const RadiancePrimitive& primitive, const std::st
   if (primitive.kind == "alias") {
     const std::optional<std::size_t> original = place_of(primitive.words[0]);
     if (!original)
-      throw InputError(where, "alias " + primitive.name + " stands for " + primitive.words[0] +
-                                  ", which is not defined before it; name the file that defines it before this one");
+      throw InputError(where,
+                       "alias " + primitive.name + " stands for " + primitive.words[0] +
+                           ", which is not defined before it\nhint: name the file that defines it before this one");
     modifier = all_[*original];
     modifier.name = primitive.name;
     if (modifier.under == *original) modifier.under = all_.size();

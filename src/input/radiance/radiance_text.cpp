@@ -33,7 +33,7 @@ bool RadianceText::has_more() {
 std::string_view RadianceText::word(const std::string& what) {
   if (!has_more()) {
     word_line_ = line_;
-    refuse("the file ends where " + what + " is expected; complete it, or export it again");
+    refuse("the file ends where " + what + " is expected\nhint: complete it, or export it again");
   }
   word_line_ = line_;
   const char quote = text_[at_];

@@ -233,8 +233,9 @@ class RadianceReader {
       std::error_code error;
       if (fs::is_regular_file(candidate, error)) return candidate;
     }
-    throw InputError(where, "names the file " + name +
-                                ", which is neither beside it nor in the current folder; put it there, or take it out");
+    throw InputError(where,
+                     "names the file " + name +
+                         ", which is neither beside it nor in the current folder\nhint: put it there, or take it out");
   }
 
   void read(const fs::path& file, const Frame& frame, const std::string& where) {
@@ -349,7 +350,7 @@ class RadianceReader {
     if (name == "void") return std::nullopt;
     if (const auto found = modifiers_.place_of(name)) return found;
     throw InputError(where, "the material " + name + " of " + primitive.kind + " " + primitive.name +
-                                " is not defined; name the file that defines it before this one, as in "
+                                " is not defined\nhint: name the file that defines it before this one, e.g. "
                                 "'materials.mat room.rad'");
   }
 

@@ -15,7 +15,7 @@
 namespace patchlight {
 namespace {
 
-constexpr const char* expected_line = "expected a wavelength in nm and a value, as 550, 0.43";
+constexpr const char* expected_line = "expected a wavelength in nm and a value, e.g. 550, 0.43";
 
 // More lines than an instrument gives, by far.
 constexpr std::size_t longest_spectrum = 100'000;

@@ -120,7 +120,7 @@ std::string model_tables(const Scene& scene, const std::vector<std::filesystem::
     const bool is_near = !relative.empty() && *relative.begin() != "..";
     text << "[[model]]\nfile = " << toml_text((is_near ? relative : absolute).string()) << '\n';
     if (metres_per_unit) text << "unit = " << toml_text(unit_name(*metres_per_unit)) << '\n';
-    text << "# What does not take part: names or patterns of objects, groups or materials.\n# leave_out = [";
+    text << "# Objects, groups or materials to leave out, by name or pattern:\n# leave_out = [";
     std::string list;
     for (const std::string& name : classes) {
       const bool is_loose = name.find("Furnish") != std::string::npos || name.find("Flow") != std::string::npos ||
@@ -144,12 +144,12 @@ std::string material_tables(const Scene& scene) {
     if (material.second_face || !(material.transmittance > 0).any()) continue;
     text << "# [[material]]\n# name = " << toml_text(material.name)
          << "\n# transmittance = " << spectrum_text(material.transmittance)
-         << "  # straight through, at right angles; 0 makes it opaque\n"
+         << "  # clear, at normal incidence; 0 makes it opaque\n"
          << "# reflectance = " << spectrum_text(material.reflectance)
          << "  # diffuse\n# index = " << shortest(material.index) << "\n\n";
   }
-  if (!text.str().empty()) return "# Glass, as the model has it. What is changed here counts.\n" + text.str();
-  return "# No material is clear. A window lets light in with:\n# [[material]]\n# name = \"Glass*\"\n"
+  if (!text.str().empty()) return "# Glazing of the model. Uncomment and edit a table to change it.\n" + text.str();
+  return "# No material is transparent. To let daylight through a window:\n# [[material]]\n# name = \"Glass*\"\n"
          "# transmittance = 0.8\n# reflectance = 0\n\n";
 }
 
@@ -178,7 +178,7 @@ NewLight lamps_in_rooms(const Scene& scene) {
   return light;
 }
 
-// "# No lamp stands in: "store", "attic" and 3 more.", or nothing.
+// "# No lamp in: "store", "attic" and 3 more.", or nothing.
 std::string names_line(const std::string& what, const std::vector<std::string>& rooms) {
   if (rooms.empty()) return {};
   std::string list;
@@ -194,23 +194,23 @@ std::string luminaire_table(const NewLight& light) {
   for (const Point& lamp : light.lamps) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
   const bool is_known = !positions.empty();
   const std::string mark = is_known ? "" : "# ";
-  return std::string("# Nothing in the model shines, and no daylight gets in: a lamp that shines all around") +
-         (is_known ? ".\n" : ",\n# for which no place was found.\n") +
-         names_line("No lamp stands in", light.rooms_without) + mark + "[[luminaire]]\n" + mark + "name = \"lamp\"\n" +
-         mark + "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
+  return std::string("# The model has neither lamp nor window, so this lamp lights it, evenly in all directions") +
+         (is_known ? ".\n" : ";\n# no place for it was found.\n") + names_line("No lamp in", light.rooms_without) +
+         mark + "[[luminaire]]\n" + mark + "name = \"lamp\"\n" + mark +
+         "kind = \"point\"    # or \"spot\", \"ies\", \"sphere\"\n" + mark + "positions = [" +
          (is_known ? positions : "[X, Y, Z]") + "]\n" + mark + "lumens = 3000\n\n";
 }
 
 // A sky as the only light is not commented out.
 std::string sky_tables(const Scene& scene, bool is_only_light) {
   const std::string mark = is_only_light ? "" : "# ";
-  const std::string why = is_only_light
-                              ? "# Nothing in the model shines: a sky, over a ground that reflects a fifth of it.\n"
-                          : has_lamp(scene) ? "# The model has lamps. With daylight as well:\n"
-                                            : "# Daylight, where a material above lets it in:\n";
+  const std::string why = is_only_light ? "# The model has no lamp, so the sky lights it; the ground reflects 20 %.\n"
+                          : has_lamp(scene) ? "# The model has lamps. To add daylight:\n"
+                                            : "# Daylight, if a material above lets it in:\n";
   return why + mark + "[sky]\n" + mark + "kind = \"overcast\"   # or \"uniform\", or \"clear\" with a sun\n" + mark +
-         "illuminance = 10000  # lx on the open ground\n\n" + mark + "[ground]\n" + mark + "reflectance = 0.2\n\n" +
-         "# [sun]\n# time = 2024-06-21T12:00:00Z\n# illuminance = 80000  # lx across its rays\n# [site]\n"
+         "illuminance = 10000  # lx, horizontal, under the open sky\n\n" + mark + "[ground]\n" + mark +
+         "reflectance = 0.2\n\n" +
+         "# [sun]\n# time = 2024-06-21T12:00:00Z\n# illuminance = 80000  # lx, direct normal\n# [site]\n"
          "# latitude = 52.5\n# longitude = 13.4\n\n";
 }
 
@@ -229,25 +229,25 @@ std::string rooms_text(const FloorGrid& grid) {
 
 std::string sensor_tables(const Scene& scene, const NewPlaces& places) {
   if (!scene.sensors.empty()) return "# The model has sensors of its own.\n\n";
-  std::string text = names_line("No sensors stand in", places.rooms_without);
+  std::string text = names_line("No sensors in", places.rooms_without);
   const std::string mark = places.grid ? "" : "# ";
   const FloorGrid grid = places.grid.value_or(FloorGrid{"work plane", "FLOOR", {}, 0.8, {}, {}, {}, 0});
-  if (!places.grid) text += "# No floor has a closed room above it. A grid over a group of faces would be:\n";
+  if (!places.grid) text += "# No closed room was found. A sensor grid over a group of faces:\n";
   text += mark + "[[sensors]]\n" + mark + "name = " + toml_text(grid.name) + '\n' + mark +
           (grid.rooms.empty() ? "floor = " + toml_text(grid.group) : "room = " + rooms_text(grid)) + '\n' + mark +
           "height = " + shortest(grid.height) + "      # metres above the floor\n" +
-          "# spacing = 0.5   # metres; EN 12464-1 by the size of the room unless stated\n" + mark +
+          "# spacing = 0.5   # metres; default: EN 12464-1, by the size of the room\n" + mark +
           (grid.rooms.empty() ? "from_walls = 0.5\n\n" : "# from_walls = 0.5\n\n");
   return text;
 }
 
 std::string camera_tables(const std::vector<Camera>& cameras) {
   std::ostringstream text;
-  if (!cameras.empty()) text << "# Views for --view NAME, from inside the rooms with the largest windows or floors.\n";
+  if (!cameras.empty()) text << "# Views for --view NAME, in the rooms with the largest windows or floors.\n";
   for (const Camera& camera : cameras) {
     text << "[[camera]]\nname = " << toml_text(camera.name) << "\neye = " << toml_text(camera.eye)
          << "\ntarget = " << toml_text(camera.target) << "\nfield_of_view = " << shortest(camera.vertical_field_of_view)
-         << "  # degrees, upright\n\n";
+         << "  # degrees, vertical\n\n";
   }
   return text.str();
 }
@@ -282,7 +282,7 @@ std::string new_scene_file(const Scene& scene, const NewLight& light, const NewP
                            const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
                            const std::filesystem::path& file) {
   std::ostringstream text;
-  text << "# A scene for patchlight; docs/formats.md has all keys. Lengths are metres.\n"
+  text << "# A scene for patchlight. `patchlight help scene-file` lists all keys. Lengths are in metres.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
        << " -o result.vtp --json result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";

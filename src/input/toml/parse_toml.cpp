@@ -78,7 +78,7 @@ void require_few_levels(std::string_view text, const std::string& file) {
     if (values > most_values) {
       throw InputError(where + std::to_string(line),
                        "found more than " + std::to_string(most_values) +
-                           " values; put points into a file of their own: file = \"...\"");
+                           " values\nhint: put points into a file of their own: file = \"...\"");
     }
     text.remove_prefix(1);
   }

@@ -21,7 +21,7 @@ namespace {
 void require_no(const TomlValue& table, const char* key, Projection projection) {
   const TomlValue* const value = find(table, key);
   if (value == nullptr) return;
-  refuse(*value, std::string("none with the projection '") + name_of(projection) + "'; leave it out");
+  refuse(*value, std::string("none with the projection '") + name_of(projection) + "'\nhint: leave it out");
 }
 
 // With what its picture shows: an angle, or a height.
@@ -97,7 +97,7 @@ SceneFile read_scene_file(const std::filesystem::path& file, const std::filesyst
   }
   if (const TomlValue* const factor = find(root, "maintenance_factor")) {
     scene.maintenance_factor = positive(*factor);
-    if (*scene.maintenance_factor > 1) refuse(*factor, "a number above 0 and up to 1, as 0.8");
+    if (*scene.maintenance_factor > 1) refuse(*factor, "a number above 0 and up to 1, e.g. 0.8");
   }
   scene.bands = bands_asked(root);
   std::vector<std::string> texts = {text};

@@ -41,7 +41,8 @@ Place site_of(const TomlValue& root, const TomlValue& needed_by) {
 }
 
 Instant instant_of(const TomlValue& value) {
-  const std::string expected = "a date and time with its offset, as 2024-06-21T12:00:00Z or 2024-06-21T13:00:00+01:00";
+  const std::string expected =
+      "a date and time with its offset, e.g. 2024-06-21T12:00:00Z or 2024-06-21T13:00:00+01:00";
   if (value.kind != TomlValue::Kind::time || !value.time.minutes_east || value.time.year == 0) refuse(value, expected);
   const TomlTime& time = value.time;
   return {time.year, time.month, time.day, time.hour + (time.minute - *time.minutes_east) / 60.0 + time.second / 3600};
@@ -68,7 +69,7 @@ SkyEntry perez_of(const TomlValue& table, const TomlValue* sun) {
     throw InputError(table.where, "a Perez sky needs the sun's place: a table [sun] with direction or time");
   for (const char* const key : {"irradiance", "illuminance"}) {
     if (const TomlValue* const strength = find(*sun, key)) {
-      throw InputError(strength->where, strength->name + " is known from sky.direct_normal; leave it out");
+      throw InputError(strength->where, strength->name + " is known from sky.direct_normal\nhint: leave it out");
     }
   }
   SolarIrradiance measured;
@@ -121,7 +122,8 @@ LightEntries lights_of(const TomlValue& root, const TomlFrame& frame) {
   const TomlValue* const weather = find(root, "weather");
   const TomlValue* const ground = find(root, "ground");
   for (const TomlValue* const other : {sun, sky}) {
-    if (weather && other) throw InputError(other->where, "sun and sky are known from [weather]; leave one of them out");
+    if (weather && other)
+      throw InputError(other->where, "sun and sky are known from [weather]\nhint: leave one of them out");
     if (other) lights.where = other->where;
     if (other && find(*other, "illuminance")) lights.photometric = true;
   }

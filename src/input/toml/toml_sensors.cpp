@@ -29,7 +29,7 @@ std::uint32_t line_of(const std::string& where) {
 [[noreturn]] void refuse_spacing(const std::string& where, double cells) {
   throw InputError(where, "sensors.spacing: found a grid of " + std::to_string(static_cast<std::uint64_t>(cells)) +
                               " cells; expected at most " + std::to_string(static_cast<std::uint64_t>(most_sensors)) +
-                              ". Give a larger spacing");
+                              "\nhint: a larger spacing");
 }
 
 // The two edges from a corner, in metres, and the spacing: a grid that is not too fine.
@@ -76,7 +76,8 @@ void require_absent(const TomlValue& table, const std::vector<std::string>& keys
   for (const std::string& key : keys) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
-    throw InputError(value->where, value->name + " says nothing about sensors given by '" + kind + "'; leave it out");
+    throw InputError(value->where,
+                     value->name + " says nothing about sensors given by '" + kind + "'\nhint: leave it out");
   }
 }
 
@@ -212,9 +213,11 @@ FloorSensors over_floor(const Scene& scene, const FloorGrid& grid) {
     throw InputError(where_of(grid), "sensors.floor: no face of '" + grid.group + "' is level");
   GridInAir over = grid_over(floor, grid, solids);
   if (over.group.sensors.empty())
-    throw InputError(where_of(grid),
-                     "sensors.spacing: no cell has its middle in the air over the floor" +
-                         (grid.from_walls > 0 ? ", " + rounded(*grid.from_walls) + " m from its rim" : std::string()));
+    throw InputError(
+        where_of(grid),
+        "sensors.spacing: no grid point is above the floor" +
+            (grid.from_walls > 0 ? " and " + rounded(*grid.from_walls) + " m from its edges" : std::string()) +
+            "\nhint: reduce spacing or from_walls");
   LeftOut notes;
   note_share(notes, grid, grid.group, over.share);
   return {{std::move(over.group)}, notes.on({}).notes};

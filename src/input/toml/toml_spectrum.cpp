@@ -81,7 +81,7 @@ bool is_by_wavelength(const TomlValue& value) {
 }
 
 std::shared_ptr<const SampledSpectrum> sampled_share(const TomlValue& value, const TomlFrame& frame) {
-  if (!names_file(value)) refuse(value, "a number, [R, G, B], or a file of wavelengths and values, as \"paint.csv\"");
+  if (!names_file(value)) refuse(value, "a number, [R, G, B], or a file of wavelengths and values, e.g. \"paint.csv\"");
   SampledSpectrum spectrum = read_named(value, frame);
   const auto above = std::find_if(spectrum.values.begin(), spectrum.values.end(), [](double v) { return v > 1; });
   if (above == spectrum.values.end()) return shared(std::move(spectrum));

@@ -139,10 +139,10 @@ TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
   for (std::vector<Point>& face : box.rooms[1].faces)
     for (Point& corner : face) corner.head<2>() *= 0.1;
   const std::string text = new_text(box);
-  EXPECT_NE(text.find("\n# No lamp stands in: \"room 1\", \"room 13\", \"room 14\".\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n# No lamp in: \"room 1\", \"room 13\", \"room 14\".\n"), std::string::npos) << text;
   EXPECT_EQ(read_scene(write("new.toml", text)).luminaires.size(), 12U);
   box.rooms.resize(1);
-  EXPECT_EQ(new_text(box).find("No lamp stands"), std::string::npos);
+  EXPECT_EQ(new_text(box).find("No lamp in"), std::string::npos);
 }
 
 // In a spire over a corner, without a ceiling and over the middle of its box, no place is found.

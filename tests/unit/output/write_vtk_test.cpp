@@ -232,7 +232,7 @@ TEST(WriteVtk, TellsWhereItComesFrom) {
   EXPECT_EQ(text(polygons, "input_file"), "tiny.obj");
   EXPECT_EQ(text(polygons, "sha256"), "00ff");
   EXPECT_EQ(text(polygons, "seed"), "1152921504606846977");
-  EXPECT_EQ(text(polygons, "decisions"), "occlusion: skipped by force; a reason");
+  EXPECT_EQ(text(polygons, "decisions"), "occlusion: disabled by option; a reason");
   EXPECT_EQ(number(polygons, "exposure"), exposure);
   ASSERT_NE(polygons->GetFieldData()->GetArray("up"), nullptr);
   EXPECT_EQ(Vector(polygons->GetFieldData()->GetArray("up")->GetTuple3(0)), Vector::UnitZ());

@@ -141,7 +141,7 @@ TEST(Decide, ObeysTheRequestAndMarksIt) {
   const Decision skipped = decision(usual_facts(), Effect::occlusion, request);
   EXPECT_FALSE(skipped.simulate);
   EXPECT_TRUE(skipped.forced);
-  EXPECT_EQ(sentence(skipped), "occlusion: skipped by force; 6 of 12 faces can stand between two patches");
+  EXPECT_EQ(sentence(skipped), "occlusion: disabled by option; 6 of 12 faces can stand between two patches");
 
   EffectFacts convex = usual_facts();
   convex.inside_hull = 0;

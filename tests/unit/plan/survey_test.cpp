@@ -145,7 +145,7 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
   scene.lamp_hints = {{"wall", rgb(20, 10, 5), "its Ka is 20, 10, 5"}};
   const std::string advice = first_light(scene).advice;
   EXPECT_NE(advice.find("its Ka is 20, 10, 5"), std::string::npos) << advice;
-  EXPECT_NE(advice.find("read.settings wall.radiance=20,10,5 "), std::string::npos) << advice;
+  EXPECT_NE(advice.find("read.settings wall.radiance=20,10,5"), std::string::npos) << advice;
 
   scene.lamp_hints.clear();
   scene.materials[1].name = "panel";

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "cli/arguments.h"
+#include "cli/exit_code.h"
+#include "validate/validate.h"
+
+#include <span>
+
+// What each command does. All may throw InputError, OutputError, MemoryError and Cancelled.
+namespace patchlight::cli {
+
+/// Reports the contents of a model and its problems. Returns input_error when the model cannot be solved.
+ExitCode check(const CheckArguments& arguments);
+
+/// Writes a commented scene file for models.
+ExitCode init(const InitArguments& arguments);
+
+/// Reads, solves, and writes all results at the end, each of them whole. `patchlight relight` is a solve without a
+/// model.
+ExitCode solve(const SolveArguments& arguments);
+
+/// Renders images of a saved solution.
+ExitCode render(const RenderArguments& arguments);
+
+/// Prints what a run would simulate, why, and what it would cost, without running it.
+ExitCode plan(const PlanArguments& arguments);
+
+/// Solves, traces paths, and prints where they differ most. Returns validation_failed when they disagree.
+ExitCode crosscheck(const CrosscheckArguments& arguments);
+
+/// Writes the form factors between the patches of a model.
+ExitCode form_factors(const FormFactorArguments& arguments);
+
+/// Solves a model with every solver.
+ExitCode compare_solvers(const ComparisonArguments& arguments);
+
+/// Measures what accuracy costs.
+ExitCode convergence(const ConvergenceArguments& arguments);
+
+/// Prints a table of cases with known answers. Returns validation_failed when one of them lies outside its error bar.
+ExitCode selftest(const SelftestArguments& arguments, std::span<const ValidationCase> cases);
+
+}  // namespace patchlight::cli

@@ -1,0 +1,36 @@
+#include "patchlight/base/error.h"
+
+#include "cli/commands.h"
+#include "cli/init_places.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "output/file/whole_file.h"
+#include "output/file/write_bytes.h"
+#include "plan/survey.h"
+
+#include <iostream>
+#include <system_error>
+
+namespace patchlight::cli {
+
+ExitCode init(const InitArguments& arguments) {
+  std::error_code error;
+  if (std::filesystem::exists(arguments.output, error))
+    throw OutputError(arguments.output.string(), "already exists\nhint: choose another name, or delete it");
+  check_writable(arguments.output);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  for (const Problem& problem : problems_with_size(scene)) print_message("note", problem.what);
+  const NewLight light = new_light(scene);
+  const TriedPlaces tried = new_places(with_new_light(scene, light));
+  for (const std::string& note : tried.notes) print_message("note", note);
+  const std::string text =
+      new_scene_file(scene, light, tried.places, arguments.models, arguments.read.metres_per_unit, arguments.output);
+  const WritingGuard guard;
+  write_bytes(arguments.output, text);
+  std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
+            << " -o result.vtp --json result.json --picture result.png\n"
+            << std::flush;
+  return good;
+}
+
+}  // namespace patchlight::cli
