@@ -277,8 +277,8 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, double met
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* model = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "dae");
   if (model == nullptr || model->mRootNode == nullptr) {
-    throw InputError(
-        file, "is not a good dae file: " + reason_of(std::string(importer.GetErrorString())) + "\nhint: export it again");
+    throw InputError(file, "is not a good dae file: " + reason_of(std::string(importer.GetErrorString())) +
+                               "\nhint: export it again");
   }
   Scene scene;
   scene.file = file;
