@@ -176,7 +176,7 @@ std::string result_in(std::string message, int status, const std::string& file) 
     const std::string place = file + ": ";
     throw InputError(file, content.starts_with(place) ? content.substr(place.size()) : content);
   }
-  throw InputError(file, "cannot be read: " + content + "; export it again");
+  throw InputError(file, "cannot be read: " + content + "\nhint: export it again");
 }
 
 // A file in memory with the text, to be read from its beginning.
