@@ -59,7 +59,7 @@ function sensorMap(name, unit, axes, group, values, errors) {
   const order = ranked(values, new Float32Array(values.length).fill(1));
   const {high: top} = usualScale(order);
   const scale = {low: 0, high: top, logarithmic: false};
-  const range = least <= most ? `${shown(least)} to ${shown(most)} ${unit}` : "there are no values";
+  const range = least <= most ? `${shown(least)} to ${shown(most)} ${shownUnit(unit)}` : "there are no values";
   const label = `Map of ${name}: ${range}`;
   const drawn = svg("svg", {viewBox: `0 0 ${(width + 90).toFixed(0)} ${(height + 10).toFixed(0)}`, width: (width + 90).toFixed(0), height: (height + 10).toFixed(0), role: "img", "aria-label": label});
   const reading = element("p", {class: "reading", "aria-live": "polite"}, element("span", {class: "faint"}, "Click a cell of the map to see its value and error bar."));
@@ -87,7 +87,7 @@ function sensorMap(name, unit, axes, group, values, errors) {
     drawn.append(svg("rect", {x: width + 8, y: y - 10, width: 14, height: 12, fill: "rgb(" + falseColour(share).join(",") + ")"}));
     drawn.append(svg("text", {x: width + 27, y}, shown(share * top, 3)));
   });
-  const words = `${name}: ${range}` + (lattice ? `. Contour lines every ${shown(top / 10)} ${unit}.` : ".");
+  const words = `${name}: ${range}` + (lattice ? `. Contour lines every ${shown(top / 10)} ${shownUnit(unit)}.` : ".");
   return element("figure", {}, drawn, reading, element("figcaption", {}, words));
 }
 

@@ -39,7 +39,7 @@ function roomParts(light) {
   const marked = (surface, value) => surface.coarse ? "~ " + shown(value) : value;
   const row = (room, name) => [room.name, name, room[name].area_m2, marked(room[name], room[name].min), room[name].mean, marked(room[name], room[name].uniformity)];
   const rows = light.rooms.flatMap((room) => ["floor", "walls", "ceiling"].filter((name) => room[name]).map((name) => row(room, name)));
-  return [table(`${light.unit === "lx" ? "Illuminance" : "Irradiance"} of the surfaces of each room, ${light.unit}`, ["room", "surface", "area, m²", "minimum", "mean", "uniformity"], rows),
+  return [table(`${light.unit === "lx" ? "Illuminance" : "Irradiance"} of the surfaces of each room, ${shownUnit(light.unit)}`, ["room", "surface", "area, m²", "minimum", "mean", "uniformity"], rows),
     light.note ? element("p", {}, "~ marks a coarse mesh: " + light.note) : null];
 }
 
@@ -48,7 +48,7 @@ function sensorTable(sensors) {
   const daylight = groups.some((group) => group.mean_daylight_factor_percent !== undefined);
   const heads = ["sensors", "number", "inside walls", "mean", "minimum", "maximum", "uniformity", "largest error bar"];
   const rows = groups.map((group) => [group.name, group.sensors, group.inside_walls, withBar(group.mean, group.standard_error_of_mean, unit), group.min, group.max, group.uniformity, group.largest_standard_error, ...(daylight ? [group.mean_daylight_factor_percent] : [])]);
-  return table(`${unit === "lx" ? "Illuminance" : "Irradiance"}, ${unit}; ± is one standard error`, daylight ? [...heads, "mean daylight factor, %"] : heads, rows);
+  return table(`${unit === "lx" ? "Illuminance" : "Irradiance"}, ${shownUnit(unit)}; ± is one standard error`, daylight ? [...heads, "mean daylight factor, %"] : heads, rows);
 }
 
 // Groups of so many sensors are listed one by one.
