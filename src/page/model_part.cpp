@@ -117,7 +117,9 @@ Json values_part(const SolvedSurface& surface, const RowMeans& means) {
   return part;
 }
 
-std::size_t slot_of(PolygonIndex polygon, Side side) { return 2 * std::size_t{polygon} + static_cast<std::size_t>(side); }
+std::size_t slot_of(PolygonIndex polygon, Side side) {
+  return 2 * std::size_t{polygon} + static_cast<std::size_t>(side);
+}
 
 // How many faces lie one on the other over a side of a polygon, at 2 * polygon + side: 0 where none does, and at most
 // `deepest`. Empty where nothing overlaps.
@@ -163,8 +165,7 @@ std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
     if ((solution.radiosity.row(patch) > least).any()) continue;
     // A stored solution has radiances alone, and a black surface has none where light gets to it.
-    const bool is_lit =
-        knows_irradiance ? (solution.irradiance.row(patch) > least_irradiance).any() : is_black(patch);
+    const bool is_lit = knows_irradiance ? (solution.irradiance.row(patch) > least_irradiance).any() : is_black(patch);
     dark[patch] = is_lit ? 0 : 1;
   }
   return dark;

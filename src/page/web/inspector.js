@@ -16,7 +16,7 @@ function rowEntries(model, row, place) {
     ["group", "Object", group === undefined ? "none" : group, group === undefined ? "" : group],
     ["source_polygon", "Face in the model file", String(rows.source_polygon[row]) + (rows.side[row] === 1 ? ", back side" : ""), rows.source_polygon[row]],
     ["area", "Area", shown(rows.area[row]) + " m²", rows.area[row]],
-    ["place", "Position, m", place.map((value) => shown(value)).join(", "), place.join(" ")],
+    ["place", "Position, m", place.map((value) => shown(Math.round(1e4 * value) / 1e4)).join(", "), place.join(" ")],
   ];
   for (const [name, array] of Object.entries(values)) {
     const components = array.length / rows.area.length;
