@@ -145,8 +145,10 @@ DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_
   std::vector<DrawnSide> sides = all_sides(surface);
   std::size_t faces = mesh.size();
   std::erase_if(sides, [&](const DrawnSide& side) {
-    if (side.is_covered) drawn.covered += side.size(), faces -= side.size();
-    return side.is_covered;
+    if (!side.is_covered) return false;
+    drawn.covered += side.size();
+    faces -= side.size();
+    return true;
   });
   sides = thinned(std::move(sides), faces, most);
   std::sort(sides.begin(), sides.end(),

@@ -23,9 +23,9 @@ struct DrawnFaces {
   std::size_t covered = 0;                            ///< patches that lie wholly under other faces: not drawn either
 };
 
-/// The faces of a surface that can be seen, at most `most` of them: patches, and where these are too many, whole sides of polygons in
-/// place of those patches that differ least from their mean, at last without the smallest. Colours are those of
-/// `exposure`. O(n log n).
+/// The faces of a surface that can be seen, at most `most` of them: patches, and where these are too many, whole sides
+/// of polygons in place of those patches that differ least from their mean, at last without the smallest. Colours are
+/// those of `exposure`. O(n log n).
 DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_t most);
 
 }  // namespace patchlight

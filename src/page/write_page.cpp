@@ -41,9 +41,9 @@ Json problems_part(const Scene& scene) {
 
 std::string caption_of(const Picture& picture) {
   std::string text = picture.camera.name.empty() ? "" : picture.camera.name + ": ";
-  text += picture.brightest ? "luminance in false colours, 0 to " + rounded(*picture.brightest) + " cd/m\u00b2"
-                            : "as it looks, exposed for what it shows";
-  return picture.unfinished ? text + "; unfinished, with larger errors" : text;
+  text += picture.brightest ? "luminance in false colors, 0 to " + rounded(*picture.brightest) + " cd/m\u00b2"
+                            : "natural colors";
+  return picture.unfinished ? text + ", preliminary: the rendering was stopped early" : text;
 }
 
 Json picture_part(const Picture& picture) {

@@ -30,7 +30,7 @@ struct Page {
 std::string page_of(const Page& page);
 
 /// Writes one page for browsers, which needs no other file and no network: the model to turn around, its values, tables
-/// and pictures. docs/page.md describes it. \throws OutputError.
+/// and pictures. docs/reference/outputs/page.md describes it. \throws OutputError.
 void write_page(const std::filesystem::path& file, const Page& page);
 
 }  // namespace patchlight

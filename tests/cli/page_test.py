@@ -1,7 +1,9 @@
 """The page that the tool writes: --html of solve, relight, compare, study and render."""
+import base64
 import json
 import re
 import unittest
+import zlib
 
 from support import ToolTest
 
@@ -9,6 +11,11 @@ from support import ToolTest
 def data_of(page):
     """What the page knows."""
     return json.loads(re.search(r'id="data">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)[1])
+
+
+def bytes_of(packed):
+    """An array of single bytes of the page."""
+    return zlib.decompress(base64.b64decode(packed["packed"]))
 
 
 class PageTest(ToolTest):
@@ -95,6 +102,24 @@ f 2 6 7 3
         self.assertIn("lies in the folder of -o", done.stderr)
         done = self.run_tool("solve", "room.obj", "--html", "page.html", "--json", "page.html")
         self.assertEqual(done.returncode, 1)
+
+    def test_faces_under_others_lie_deeper_and_unlit_ones_are_marked(self):
+        # A lit cube with a rug on its floor, and a closed cube beside it that no light gets into.
+        cube = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+        lines, corner = [], 0
+        for left, size in ((0, 1), (3, 0.5)):
+            lines += [f"v {left + size * x} {size * y} {size * z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+            lines += ["f " + " ".join(str(corner + k + 1) for k in reversed(face)) for face in cube]
+            corner += 8
+        lines += ["v 0.3 0.3 0", "v 0.7 0.3 0", "v 0.7 0.7 0", "v 0.3 0.7 0", "f 17 18 19 20"]
+        self.write("rug.obj", "\n".join(lines) + "\n")
+        self.write("rug.toml", '[[model]]\nfile = "rug.obj"\n[[luminaire]]\nkind = "point"\nposition = [0.5, 0.5, 0.6]\nlumens = 1000\n')
+        model = self.made("solve", "rug.toml", "--sides", "both", "--patches", 300)["model"]
+        layer, dark, side = (bytes_of(model["rows"][name]) for name in ("layer", "dark", "side"))
+        self.assertEqual(set(layer), {0, 1})
+        self.assertIn(1, dark)
+        self.assertIn(0, dark)
+        self.assertEqual(len(layer), len(side))
 
     def test_hostile_names_stay_text(self):
         name = "</script><script>alert(1)</script>"

@@ -10,7 +10,7 @@ const byId = (id) => document.getElementById(id);
 
 // A table with a caption; cells are texts, numbers or elements.
 function table(caption, heads, rows) {
-  const reads = (cell) => typeof cell === "number" || cell === null || /^((~ )?-?[\d.,]+(e[+-]?\d+)?(\u00a0%)?|not known|no bound)$/.test(cell);
+  const reads = (cell) => typeof cell === "number" || cell === null || /^((~ )?-?[\d.,]+(e[+-]?\d+)?(\u00a0%)?|not known|no bound|unlimited)$/.test(cell);
   const isNumber = heads.map((_, column) => rows.length > 0 && rows.every((row) => reads(row[column])));
   const cell = (content, column) => {
     const made = element("td", isNumber[column] ? {class: "number"} : {});
@@ -27,9 +27,9 @@ function list(texts) {
   return element("ul", {}, ...texts.map((text) => element("li", {}, text)));
 }
 
-// A section with its heading, at the end of the tables; nothing without content.
+// A section with its heading, at the end of the tables, rooms and sensors before the images; nothing without content.
 function section(id, heading, ...content) {
   const kept = content.filter((part) => part !== null && part !== undefined);
   if (kept.length === 0) return;
-  byId("tables").append(element("section", {id}, element("h2", {}, heading), ...kept));
+  byId(id === "rooms" || id === "sensors" ? "results" : "tables").append(element("section", {id}, element("h2", {}, heading), ...kept));
 }

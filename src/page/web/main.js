@@ -7,12 +7,12 @@ function writeHead() {
   const parts = [];
   if (report) {
     const error = report.relative_error;
-    parts.push(`${report.mesh.patches.toLocaleString("en")} patches on ${shown(report.mesh.area_m2)} m².`);
-    parts.push(error ? `Light that is reflected ${error.inside ? "inside " : ""}is known to ${percent(error.total)}.` : "How far the values may be off is not known: the run was made without error bars.");
+    parts.push(`${report.mesh.patches.toLocaleString("en")} patches, ${shown(report.mesh.area_m2)} m².`);
+    parts.push(error ? `Estimated error of the reflected light${error.inside ? " indoors" : ""}: ${percent(error.total)}.` : "This run has no error bars.");
   } else if (model) {
     parts.push(`${model.patches.toLocaleString("en")} patches.`);
   }
-  parts.push(`Solved by patchlight ${data.version}.`);
+  parts.push(`patchlight ${data.version}.`);
   byId("lead").textContent = parts.join(" ");
 }
 
@@ -38,22 +38,22 @@ function writePictures() {
 
 async function writeTables(show) {
   const {report} = data;
-  if (data.comparison) section("comparison", "Solvers side by side", ...comparisonParts(data.comparison));
-  if (data.study) section("study", "What accuracy costs", ...studyParts(data.study));
+  if (report && report.room_surfaces && report.room_surfaces.rooms.length > 0) section("rooms", "Rooms", ...roomParts(report.room_surfaces));
+  if (report && report.sensors) section("sensors", "Sensors", ...await sensorParts(report.sensors, data.sensors || []));
+  if (data.comparison) section("comparison", "Comparison of solvers", ...comparisonParts(data.comparison));
+  if (data.study) section("study", "Convergence study", ...studyParts(data.study));
   const notes = [...data.scene_notes, ...(report ? report.plan.notes : [])];
   const warnings = report && report.sensors ? report.sensors.warnings : [];
   section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
   if (report) {
-    section("accuracy", "What accuracy cost", ...accuracyParts(report));
-    if (report.sensors) section("sensors", "Sensors", sensorTable(report.sensors), ...(data.sensors ? await sensorMaps(data.sensors).catch((fault) => [element("p", {}, "The maps cannot be drawn: " + fault.message)]) : []));
-    if (report.room_surfaces && report.room_surfaces.rooms.length > 0) section("rooms", "Rooms", ...roomParts(report.room_surfaces));
+    section("accuracy", "Refinement", ...accuracyParts(report));
     section("materials", "Materials", materialsTable(report));
     section("energy", "Energy balance", energyTable(report.energy_balance));
-    section("convergence", "Convergence", ...convergenceParts(report.solution));
-    section("plan", "Plan", ...planTable(report.plan));
-    section("costs", "Time", table("Seconds of each stage", ["stage", "seconds", "CPU s"], report.costs.map((cost) => [cost.stage, duration(cost.seconds), duration(cost.cpu_seconds)])));
+    section("convergence", "Convergence of the solver", ...convergenceParts(report.solution));
+    section("plan", "Simulated effects and settings", ...planTable(report.plan));
+    section("costs", "Run time", table("Time of each stage", ["stage", "wall time, s", "CPU time, s"], report.costs.map((cost) => [cost.stage, duration(cost.seconds), duration(cost.cpu_seconds)])));
   }
-  section("repeat", "How to repeat it", ...repeatParts(data));
+  section("repeat", "Reproduce this result", ...repeatParts(data));
 }
 
 function writeContents() {
@@ -91,11 +91,12 @@ async function unpackedModel() {
 
 // What the range does not show.
 function extremes(model, order, scale, unit) {
-  if (order.length === 0) return "No value is known.";
+  if (order.length === 0) return "There are no values.";
   const least = order[0], most = order[order.length - 1];
-  const told = ({row, value}) => `${shown(value)} ${unit} (patch ${model.rows.patch[row]})`;
+  const words = ({row, value}) => `${shown(value)} ${unit} (patch ${model.rows.patch[row]})`;
   const inside = order.length < model.rows.area.length && model.rows.enclosed;
-  return `Least ${told(least)}, most ${told(most)}${inside ? " inside, which the range goes by" : ""}; ${percent(shareBeyond(order, scale))} of ${inside ? "that" : "the"} area lies beyond the range.`;
+  return `Lowest ${words(least)}, highest ${words(most)}${inside ? ", both of patches inside. The range is that of the inside" : ""}. ${percent(shareBeyond(order, scale))} of the area ${inside ? "inside " : ""}is outside the range.`
+    + (model.rows.dark.includes(1) ? " Gray: no light reaches the surface." : "");
 }
 
 function listenToColours(model, view) {
@@ -151,11 +152,11 @@ function listenToView(model, view) {
     const hit = view.pick(x, y);
     if (marked) marked.remove();
     marked = null;
-    if (!hit) return byId("values").replaceChildren(element("p", {class: "faint"}, "There is no patch at that place."));
+    if (!hit) return byId("values").replaceChildren(element("p", {class: "faint"}, "There is no patch here."));
     const same = [];
     model.faces.row.forEach((row, face) => { if (row === hit.row) same.push(face); });
     marked = view.lines(outlines(model.faces, view.mesh, same), 0xff2fd0);
-    tellRow(model, hit.row, hit.place);
+    showRow(model, hit.row, hit.place);
   };
   view.canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
   view.canvas.addEventListener("click", (event) => {
@@ -200,13 +201,13 @@ function showOutlines(view) {
   };
 }
 
-function tellFewer(model) {
-  if (!model.photometric) byId("fewer").textContent = "Photometric values are 179 lm/W times the bands by their luminous weights: the lights of this scene are stated in watts. ";
-  if (model.textured.length > 0) byId("fewer").textContent += `Surfaces with a picture (${model.textured.join(", ")}) are drawn with the mean colour of each patch. `;
-  if (model.faces.row.length === model.patches) return;
+function explainDrawing(model) {
+  if (!model.photometric) byId("fewer").textContent = "The lights of this scene are given in watts. Photometric values assume 179 lm/W. ";
+  if (model.textured.length > 0) byId("fewer").textContent += `Textured surfaces (${model.textured.join(", ")}) show the mean color of each patch. `;
   const left = model.patches_left_out;
-  byId("fewer").textContent += `The model has ${model.patches.toLocaleString("en")} patches and is drawn with ${model.faces.row.length.toLocaleString("en")} faces: where patches differ least, whole faces stand in their place with their means.`
-    + (left > 0 ? ` ${left.toLocaleString("en")} patches of the smallest faces are left out.` : "");
+  if (model.faces.row.length + model.patches_covered === model.patches) return;
+  byId("fewer").textContent += `The model has ${model.patches.toLocaleString("en")} patches. The page draws ${model.faces.row.length.toLocaleString("en")} faces: where patches differ least, one face with their mean replaces them.`
+    + (left > 0 ? ` ${left.toLocaleString("en")} patches of the smallest faces are not drawn.` : "");
 }
 
 async function showModel() {
@@ -215,7 +216,7 @@ async function showModel() {
   try {
     const model = await unpackedModel();
     await loadThree(data.three);
-    tellFewer(model);
+    explainDrawing(model);
     const view = modelView(byId("canvas"), model);
     listenToColours(model, view);
     listenToCut(model, view);
@@ -223,7 +224,7 @@ async function showModel() {
     return showOutlines(view);
   } catch (error) {
     byId("lost").hidden = false;
-    byId("lost").textContent = "The model cannot be drawn: this needs WebGL and DecompressionStream, as browsers since 2023 have them (" + error.message + "). Tables and pictures below are complete.";
+    byId("lost").textContent = "This browser cannot draw the model. It needs WebGL and DecompressionStream, which browsers have since 2023 (" + error.message + "). The tables and images below are complete.";
     for (const control of document.querySelectorAll(".controls *")) control.disabled = true;
     return null;
   }

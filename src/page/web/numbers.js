@@ -18,6 +18,18 @@ function duration(seconds) {
   return Number.isFinite(seconds) && seconds >= 100 ? shown(Math.round(seconds), 9) : shown(seconds, 2);
 }
 
+// The report writes units in letters alone.
+const shownUnit = (unit) => unit.replace("^2", "²");
+
+// A value with its error bar, one standard error, to the digits that this leaves of one digit: "412 lx ± 6".
+function withBar(value, error, unit) {
+  if (!Number.isFinite(value)) return "not known";
+  if (!Number.isFinite(error) || error <= 0) return `${shown(value)}\u00a0${shownUnit(unit)}`;
+  const digits = Math.min(12, Math.max(0, -Math.floor(Math.log10(error))));
+  const fixed = (number) => number.toLocaleString("en", {minimumFractionDigits: digits, maximumFractionDigits: digits});
+  return `${fixed(value)}\u00a0${shownUnit(unit)}\u00a0±\u00a0${fixed(error)}`;
+}
+
 function spectrum(values) {
   return values.map((value) => shown(value)).join(", ");
 }

@@ -42,7 +42,7 @@ function contour(lattice, points, values, level) {
   return pieces;
 }
 
-function sensorMap(name, unit, axes, group, values) {
+function sensorMap(name, unit, axes, group, values, errors) {
   const count = values.length;
   const project = planeOf(axes);
   const points = Array.from({length: count}, (_, k) => project(group.places, 3 * k));
@@ -59,13 +59,19 @@ function sensorMap(name, unit, axes, group, values) {
   const order = ranked(values, new Float32Array(values.length).fill(1));
   const {high: top} = usualScale(order);
   const scale = {low: 0, high: top, logarithmic: false};
-  const range = least <= most ? `from ${shown(least)} to ${shown(most)}` : "no value is known";
-  const label = `Map of ${name}, ${unit}: ${range}`;
+  const range = least <= most ? `${shown(least)} to ${shown(most)} ${shownUnit(unit)}` : "there are no values";
+  const label = `Map of ${name}: ${range}`;
   const drawn = svg("svg", {viewBox: `0 0 ${(width + 90).toFixed(0)} ${(height + 10).toFixed(0)}`, width: (width + 90).toFixed(0), height: (height + 10).toFixed(0), role: "img", "aria-label": label});
+  const reading = element("p", {class: "reading", "aria-live": "polite"}, element("span", {class: "faint"}, "Click a cell of the map to see its value and error bar."));
   outlines.forEach((outline, k) => {
     const colour = "rgb(" + falseColour(shareOf(values[k], scale)).join(",") + ")";
     const cell = svg("polygon", {points: outline.map((point) => to(point).join(",")).join(" "), fill: colour, stroke: colour, "stroke-width": 0.5});
-    cell.append(svg("title", {}, Number.isNaN(values[k]) ? "inside a wall" : shown(values[k]) + " " + unit));
+    const words = Number.isNaN(values[k]) ? "inside a wall" : withBar(values[k], errors[k], unit);
+    cell.append(svg("title", {}, words));
+    cell.addEventListener("click", () => {
+      const [x, y, z] = group.places.subarray(3 * k, 3 * k + 3);
+      reading.replaceChildren("At " + [x, y, z].map((part) => shown(part, 3)).join(", ") + " m: ", element("strong", {}, words));
+    });
     drawn.append(cell);
   });
   const lattice = latticeOf(points);
@@ -81,16 +87,13 @@ function sensorMap(name, unit, axes, group, values) {
     drawn.append(svg("rect", {x: width + 8, y: y - 10, width: 14, height: 12, fill: "rgb(" + falseColour(share).join(",") + ")"}));
     drawn.append(svg("text", {x: width + 27, y}, shown(share * top, 3)));
   });
-  return element("figure", {}, drawn, element("figcaption", {}, `${name}, ${unit}: ${range}` + (lattice ? `; a contour line every ${shown(top / 10)} ${unit}` : "")));
+  const words = `${name}: ${range}` + (lattice ? `. Contour lines every ${shown(top / 10)} ${shownUnit(unit)}.` : ".");
+  return element("figure", {}, drawn, reading, element("figcaption", {}, words));
 }
 
-async function sensorMaps(groups) {
-  const maps = [];
-  for (const group of groups) {
-    if (!group.cells) continue;
-    const arrays = await unpackedAll({places: group.places, cells: group.cells, values: group.values, ...(group.daylight_factors ? {factors: group.daylight_factors} : {})});
-    maps.push(sensorMap(group.name, group.unit, group, arrays, arrays.values));
-    if (arrays.factors) maps.push(sensorMap(group.name + ", daylight factor", "%", group, arrays, arrays.factors));
-  }
+async function mapsOf(group) {
+  const arrays = await unpackedAll({places: group.places, cells: group.cells, values: group.values, errors: group.standard_errors, ...(group.daylight_factors ? {factors: group.daylight_factors} : {})});
+  const maps = [sensorMap(group.name, group.unit, group, arrays, arrays.values, arrays.errors)];
+  if (arrays.factors) maps.push(sensorMap(group.name + ", daylight factor", "%", group, arrays, arrays.factors, new Float32Array(arrays.factors.length)));
   return maps;
 }

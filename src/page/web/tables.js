@@ -1,7 +1,7 @@
 // Tables of the report, by the keys of docs/reference/outputs/report-json.md.
 function materialsTable(report) {
   const rows = report.materials.map((material) => [material.name, material.area_m2, spectrum(material.reflectance), spectrum(material.flux_emitted_W), spectrum(material.flux_absorbed_W), spectrum(material.irradiance_mean_W_m2)]);
-  return table("Materials, bands with commas", ["material", "area, m²", "reflectance", "emitted, W", "absorbed, W", "mean irradiance, W/m²"], rows);
+  return table("Materials, with a value for each band", ["material", "area, m²", "reflectance", "emitted, W", "absorbed, W", "mean irradiance, W/m²"], rows);
 }
 
 function energyTable(balance) {
