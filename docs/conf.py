@@ -12,7 +12,7 @@ ROOT = DOCS.parent
 project = "patchlight"
 author = "the patchlight authors"
 copyright = author  # noqa: A001
-release = re.search(r"VERSION (\d[\d.]*)", (ROOT / "CMakeLists.txt").read_text())[1]
+release = re.search(r"project\(patchlight VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
 extensions = ["myst_parser", "sphinxcontrib.bibtex"]
 bibtex_bibfiles = ["theory/bibliography.bib"]
 bibtex_default_style = "alpha"
@@ -24,6 +24,8 @@ myst_heading_anchors = 4
 suppress_warnings = ["myst.header", "misc.highlighting_failure", "bibtex.missing_field"]
 # Debian's MathJax, so that the pages need no network; for a site on the web: sphinx-build -D mathjax_path=ADDRESS.
 mathjax_path = "file:///usr/share/javascript/mathjax/MathJax.js?config=TeX-AMS-MML_HTMLorMML"
+mathjax2_config = {"tex2jax": {"processClass": "math", "inlineMath": [["\\(", "\\)"]], "displayMath": [["\\[", "\\]"]]}}
+myst_update_mathjax = False
 html_theme = "furo"
 html_title = f"patchlight {release}"
 html_show_copyright = False

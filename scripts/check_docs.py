@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Runs the commands that pages show and compares what they print; checks links, and numbers quoted from benchmarks.
+"""Runs the commands of pages and compares their output; checks links, and numbers quoted from benchmarks.
 
 usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/check_docs.py PAGE|FOLDER...   runs the blocks of these pages
        scripts/check_docs.py --links                                               checks links and quotes of all pages
 
+PATCHLIGHT_PYTHON is the interpreter that pages run as python3, Debian's if it is not set: the module needs that one.
+
 Each page has a scratch folder of its own, in which meshes/ and scripts/ are visible and `patchlight` and `python3` are
-on the PATH. A block whose first line is `# file: NAME` (or `// file: NAME`) becomes this file. Of ```console blocks each
-line after `$ ` is run and the lines below are compared with its output: `...` alone stands for any lines, `...` at the
-end of a line for its rest, numbers may differ by 5 %, times and memory by anything. `[exit 2]` as the last line is the
+on the PATH. A block whose first line is `# file: NAME` (or `// file: NAME`) becomes this file. Each line after `$ ` in a
+```console block is run, and the lines below are compared with its output. `...` alone stands for any lines, `...` at the
+end of a line for its rest. Numbers may differ by 5 %, times and memory by anything. `[exit 2]` as the last line is the
 exit code; without it a command that prints no error has to end with 0. ```sh blocks run in README.md alone.
 
 A paragraph or table with `<!-- from: benchmarks/NAME.md#section -->` in it or right above it quotes this section: each
@@ -23,6 +25,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
+PYTHON = os.environ.get("PATCHLIGHT_PYTHON") or "/usr/bin/python3"
 TOLERANCE = 0.05
 NUMBER = r"[-+]?(?:\d[\d,]*\d|\d)(?:\.\d+)?(?:[eE][-+]?\d+)?"
 MEASURED = re.compile(rf"(?<![\w.]){NUMBER} ?(?:us|µs|ms|s|min|h|[kMG]i?B)\b|\b\d\d?:\d\d(?::\d\d)?\b|\b\d{{4}}-\d\d-\d\d\b")
@@ -138,7 +141,7 @@ def printed_lines(text, folder):
 
 
 def run(command, asks_code, folder, environment, last_code):
-    """Runs a command; returns its exit code and what is wrong with it."""
+    """Runs a command; returns its exit code and its faults."""
     done = subprocess.run(["bash", "-c", f"(exit {last_code}); {command.text}"], cwd=folder, env=environment, check=False,
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     shown = [line for line in command.shown if line.strip()]
@@ -173,6 +176,8 @@ def check_page(page, tool):
         for entry in ("meshes", "scripts"):
             (folder / entry).symlink_to(ROOT / entry)
         (programs / "patchlight").symlink_to(tool)
+        if pathlib.Path(PYTHON).exists():
+            (programs / "python3").symlink_to(PYTHON)
         environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
         code = 0
         for language, first, lines in blocks(page):
@@ -276,6 +281,9 @@ def check_links():
             elif part and found[0].suffix == ".md" and part not in anchors(found[0]):
                 wrong.append(f"{page.relative_to(ROOT)}:{line}: there is no heading {target}")
             linked[page] |= {file.resolve() for file in found}
+    shown = set().union(*linked.values())
+    wrong += [f"{figure.relative_to(ROOT)}: no page shows this figure" for figure in sorted((DOCS / "figures").rglob("*"))
+              if figure.is_file() and figure not in shown]
     reached, waiting = set(), [DOCS / "index.md"]
     while waiting:
         page = waiting.pop()

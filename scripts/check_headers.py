@@ -17,7 +17,7 @@ INCLUDE = ROOT / "include"
 
 
 def compile_alone(compiler, header):
-    """What the compiler says of a file that includes the header twice and nothing else."""
+    """The messages of the compiler for a file that includes only the header, twice."""
     line = f'#include "{header.relative_to(INCLUDE)}"\n'
     done = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I", INCLUDE,
                            "-isystem", "/usr/include/eigen3", "-x", "c++", "-"],

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks who includes whom: modules and libraries, as scripts/layers.txt allows.
+"""Checks that modules include only the modules and libraries that scripts/layers.txt allows.
 
 usage: scripts/check_layers.py [ROOT]    ROOT holds include/, src/ and scripts/layers.txt; default: this repository
 """
@@ -42,7 +42,7 @@ def module_of(path):
 
 
 def check_include(module, public, quoted, angled, layers):
-    """What is wrong with one include line, or None."""
+    """The fault of one include line, or None."""
     if quoted:
         other = module_of(quoted.removeprefix("patchlight/"))
         if other == module or other in layers["modules"][module]:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks the one-definition rule over the whole tool: link-time optimisation compares the classes and functions of all
+# Checks the one-definition rule over the whole tool: link-time optimization compares the classes and functions of all
 # files that have one name, and different ones are an error. Takes some minutes of one processor.
 # usage: scripts/check_odr.sh
 set -euo pipefail

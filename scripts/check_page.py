@@ -4,7 +4,9 @@
 usage: scripts/check_page.py TOOL FOLDER    writes pages, results and screenshots into FOLDER
 A page must open without a message on its console; of five patches clicked the values are those of the .vtp of the same
 run, and the place clicked lies on the patch. Names that are HTML stay text, panes let see what is behind them, the
-legend's range by day is of the inside, and no note stands there twice. Without Chromium it says so and ends well,
+legend's range by day is of the inside, and no note stands there twice. A closed room in which all that can be seen has
+one radiance shows no dark pixel and no gap, from inside, from outside and in sections, however its faces overlap.
+Without Chromium it says so and ends well,
 unless CI is set.
 """
 import json
@@ -65,6 +67,53 @@ setTimeout(() => {
 </script></body>"""
 
 
+# A page whose background is white. Frames are drawn without the screen, which a browser without a window may not have.
+WHITE = """<style>:root { --stage: #fff !important; }</style>
+<script>window.requestAnimationFrame = (draw) => setTimeout(draw, 0);</script></head>"""
+
+# Counts pixels of views of the model: those darker than any surface of it, and those as bright as what is behind it.
+PIXELS = """<script>
+const counts = {};
+const later = () => new Promise((done) => setTimeout(done, 500));
+const count = async (view) => {
+  await later();
+  const canvas = document.getElementById("canvas"), copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const drawn = copy.getContext("2d");
+  drawn.drawImage(canvas, 0, 0);
+  const {data} = drawn.getImageData(0, 0, copy.width, copy.height);
+  counts[view] = {all: data.length / 4, black: 0, white: 0, least: 255};
+  for (let k = 0; k < data.length; k += 4) {
+    const brightest = Math.max(data[k], data[k + 1], data[k + 2]);
+    counts[view].least = Math.min(counts[view].least, brightest);
+    counts[view].black += brightest < 100;
+    counts[view].white += Math.min(data[k], data[k + 1], data[k + 2]) > 240;
+  }
+};
+const set = (id, value) => { document.getElementById(id).value = value; document.getElementById(id).dispatchEvent(new Event("input")); };
+const look = async () => {
+  if (document.documentElement.dataset.state !== "ready") return setTimeout(look, 200);
+  await count("inside");
+  for (const id of ["outside", "above"]) {
+    document.getElementById(id).click();
+    await count(id);
+  }
+  for (const axis of [0, 1, 2]) {
+    document.getElementById("outside").click();
+    set("cut-axis", axis);
+    set("cut-at", 450);
+    await count("section " + "xyz"[axis]);
+  }
+  const pre = document.createElement("pre");
+  pre.id = "check";
+  pre.textContent = JSON.stringify(counts);
+  document.body.replaceChildren(pre);
+  document.head.replaceChildren();
+};
+look();
+</script></body>"""
+
+
 def browse(browser, page, *options):
     """What the browser prints, and the messages of the page's console."""
     with tempfile.TemporaryDirectory(prefix="patchlight-browser-") as profile:
@@ -73,10 +122,11 @@ def browse(browser, page, *options):
     return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
 
 
-def facts_of(browser, page):
-    """The page after the clicks."""
+def facts_of(browser, page, script=CLICKS, head="</head>"):
+    """The facts that a script finds on the page."""
     clicked = page.with_suffix(".clicked.html")
-    clicked.write_text(page.read_text(encoding="utf-8").replace("</body>", CLICKS), encoding="utf-8")
+    html = page.read_text(encoding="utf-8").replace("</head>", head).replace("</body>", script)
+    clicked.write_text(html, encoding="utf-8")
     printed, messages = browse(browser, clicked, "--dump-dom")
     clicked.unlink()
     found = re.search(r'<pre id="check">(.*?)</pre>', printed, re.DOTALL)
@@ -193,6 +243,68 @@ def write_glass(folder):
     (folder / "glass.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def turned(x, y, z):
+    """A place of the room of write_seams(), along no axis."""
+    x, y = 0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y
+    return x, 0.96 * y - 0.28 * z, 0.28 * y + 0.96 * z
+
+
+def write_seams(folder):
+    """A closed room in which each surface that can be seen has the same radiance, whatever it is made of: floor and
+    ceiling in parts whose edges do not meet those of the walls, a rug on the floor, which is smaller than each of its parts, a panel that stands there twice,
+    a block on the floor, and an outer skin in the planes of the walls."""
+    lit, other = [], []
+    for x, y, far_x, far_y in ((0, 0, 2.3, 4), (2.3, 0, 5, 1.7), (2.3, 1.7, 5, 4)):
+        lit.append([(x, y, 0), (far_x, y, 0), (far_x, far_y, 0), (x, far_y, 0)])
+    for y, far_y in ((0, 0.9), (0.9, 3.1), (3.1, 4)):
+        lit.append([(0, far_y, 3), (5, far_y, 3), (5, y, 3), (0, y, 3)])
+    walls = [[(0, 0, 0), (0, 0, 3), (5, 0, 3), (5, 0, 0)], [(5, 0, 0), (5, 0, 3), (5, 4, 3), (5, 4, 0)],
+             [(5, 4, 0), (5, 4, 3), (0, 4, 3), (0, 4, 0)], [(0, 4, 0), (0, 4, 3), (0, 0, 3), (0, 0, 0)]]
+    lit += walls
+    other += [wall[::-1] for wall in walls]
+    rug = [(1.1, 1.2, 0), (2.9, 1.2, 0), (2.9, 3.3, 0), (1.1, 3.3, 0)]
+    panel = [(0, 3.1, 0.6), (0, 3.1, 2.2), (0, 1.3, 2.2), (0, 1.3, 0.6)]
+    lit += [rug, panel]
+    other.append(panel)
+    low, high = [(3.9, 2.9, 0), (4.6, 2.9, 0), (4.6, 3.7, 0), (3.9, 3.7, 0)], 1.1
+    top = [(x, y, high) for x, y, _ in low]
+    lit += [top, low[::-1]] + [[low[k - 1], low[k], top[k], top[k - 1]] for k in range(4)]
+    (folder / "seams.mtl").write_text("newmtl lit\nKd 0.5 0.5 0.5\nKe 0.5 0.5 0.5\nnewmtl other\nKd 0.5 0.5 0.5\n",
+                                      encoding="utf-8")
+    lines, corner = ["mtllib seams.mtl"], 0
+    for material, faces in (("lit", lit), ("other", other)):
+        for face in faces:
+            lines += [f"o face_{corner}", f"usemtl {material}"] + ["v %r %r %r" % turned(*place) for place in face]
+            lines.append("f " + " ".join(str(corner + k + 1) for k in range(4)))
+            corner += 4
+    (folder / "seams.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    eye, target = turned(4.7, 0.3, 2.1), turned(0.9, 3.1, 0.8)
+    (folder / "seams.toml").write_text(f"""up = "z"
+[[model]]
+file = "seams.obj"
+[[camera]]
+name = "inside"
+eye = {list(eye)}
+target = {list(target)}
+field_of_view = 80
+""", encoding="utf-8")
+
+
+def faults_of_seams(browser, page):
+    """A furnace has one colour: no pixel of it is dark, and from inside none shows what is behind it."""
+    counts, messages = facts_of(browser, page, PIXELS, WHITE)
+    yield from (f"on the console: {message}" for message in messages)
+    if counts is None:
+        yield "the page did not come to its end"
+        return
+    for view, count in counts.items():
+        print(f"page: seams: {view}: {count['black']} of {count['all']} pixels are dark, the least bright {count['least']}")
+        if count["black"] or count["white"] == count["all"]:
+            yield f"{view}: {count['black']} pixels are dark, {count['white']} of {count['all']} show no face"
+    if counts["inside"]["white"]:
+        yield f"inside: {counts['inside']['white']} pixels show what is behind a closed room"
+
+
 def solve(tool, folder, name, *words):
     """Solves a scene with a page and a .vtp."""
     subprocess.run([tool, "solve", *map(str, words), "--quiet", "--html", folder / f"{name}.html", "-o",
@@ -220,7 +332,13 @@ def main():
     write_glass(folder)
     solve(tool, folder, "glass", folder / "glass.obj", "--up", "z", "--sky", "overcast:10000lx", "--patches", 400)
     solve(tool, folder, "hostile", folder / "hostile.obj", "--patches", 300)
+    write_seams(folder)
+    solve(tool, folder, "seams", folder / "seams.toml", "--sides", "both", "--patches", 1500)
     failed = False
+    for fault in faults_of_seams(browser, folder / "seams.html"):
+        failed = True
+        print(f"error: page: seams: {fault}", file=sys.stderr)
+    browse(browser, folder / "seams.html", f"--screenshot={folder / 'seams'}.png", "--window-size=1280,1800")
     for name in ("cornell_box", "two_rooms", "accuracy", "daylight", "glass", "hostile"):
         for fault in check(browser, folder, name):
             failed = True

@@ -93,7 +93,7 @@ def pixels_of(file):
 
 
 def check_screenshot(file, data):
-    """Colours come out as they stand in the array, neither mapped nor shaded; only edges are mixed."""
+    """Colors come out as they stand in the array, neither mapped nor shaded; only edges are mixed."""
     pixels = pixels_of(file)
     known, shown, lit = colours_of(data), 0, 0
     for k in range(pixels.GetNumberOfTuples()):
@@ -113,7 +113,7 @@ def mean_colour(file):
 
 
 def check_smooth(result, file):
-    """What the macro shows of a result are the colours of its points: the same light as that of the patches, smoothed."""
+    """The macro shows the colors of the points of a result: the same light as that of the patches, smoothed."""
     view = simple.CreateView("RenderView")
     simple.SetActiveView(view)
     simple.SetActiveSource(result)
@@ -126,7 +126,7 @@ def check_smooth(result, file):
 
 
 def screenshot(source, file, time=0.0):
-    """The colours of patches: a source is active, the macro runs; then the time slider is moved."""
+    """The colors of patches: a source is active, the macro runs; then the time slider is moved."""
     view = simple.CreateView("RenderView")
     simple.SetActiveView(view)
     simple.SetActiveSource(source)

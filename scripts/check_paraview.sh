@@ -2,8 +2,8 @@
 # Opens a result and a series in ParaView, applies scripts/paraview_view.py, takes screenshots and compares what ParaView
 # finds with the report. Fetches ParaView into FOLDER when it is not there: about 75 MB to download, 600 MB on disk.
 # usage: scripts/check_paraview.sh [FOLDER]    default: build/paraview; needs the tool in build/src
-# A FOLDER that holds anything else than what this script has put there is left alone, and refused.
-# Without ParaView and without a network it says so and ends well, unless CI is set.
+# The script refuses a FOLDER that holds other files than its own.
+# Without ParaView and a network it prints a note and succeeds, unless CI is set.
 set -euo pipefail
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$(realpath -m "${1:-$checkout/build/paraview}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the prose of pages, messages and comments against the rules of docs/developer/prose-style.md.
+"""Checks the prose of pages, messages, comments and scripts against the rules of docs/developer/prose-style.md.
 
 usage: scripts/check_prose.py                   compares the hits of each group with scripts/prose_counts.txt
        scripts/check_prose.py --list [PATH...]  lists the hits as FILE:LINE, in these files and folders
@@ -21,17 +21,17 @@ LONGEST_SENTENCE = 35  # words; the rule is 25, and lists of names may be longer
 # name, pattern, advice. They see the text with each piece of code replaced by CODE.
 RULES = [(name, re.compile(pattern, flags), advice) for name, pattern, advice, flags in [
     ("relative", r"[,;( ]what (of|is|are|they|it|these|that|stands|lies)\b", "name the thing instead of 'what ...'", 0),
-    ("front", r"(^|[.!?] )(What|Who|Whoever|Of|By(?! default)|Into) ", "start with the subject", 0),
+    ("front", r"(^|[.!?] )(What|Who|Whoever|Of(?! these,)|By(?! default| day| reciprocity)|Into) ", "start with the subject", 0),
     ("tell", r"\b(tells?|told|says|is said)\b", "programs print, report, list, warn, estimate", 0),
-    ("as", r"(?<!same)(?<!such)(?<!well)(?<!far),? as (in|of|by|for|\d)\b", "write 'for example' or 'e.g.'", 0),
-    ("decimal", r"(?<![\d\w.])\.\d+", "write 0.3, not .3", 0),
+    ("as", r"(?<!well), as (of|by)\b|(?<!well),? as \d", "write 'for example' or 'e.g.'", 0),
+    ("decimal", r"(?<![\d\w.%+])\.\d+", "write 0.3, not .3", 0),
     ("archaic", r"\b(anew|of then|of now|mend(s|ed)?|errs?|astray|in the mean|by the clock)\b", "use a modern word", re.I),
     ("some", r"\bsome \d", "write 'about'", re.I),
     ("wanted", r"\b(were|was|are) (wanted|asked)\b", "goals do not belong here", 0),
     ("part", r"\b(tak\w+|took) (no )?part\b", "write 'is simulated', 'is included'", 0),
-    ("spelling", r"\b(\w*(colour|neighbour|behaviour|favour|grey)\w*|(centi|milli|kilo)?metres?|centred?|centres|licences?|fibres?|catalogues?"
+    ("spelling", r"(?<![\w/])([a-z]*(colour|neighbour|behaviour|favour|grey)[a-z]*|(centi|milli|kilo)?metres?|centred?|centres|licences?|fibres?|catalogues?"
                  r"|(analy|minimi|optimi|normali|visuali|organi|summari|generali|parameteri|triangulari|recogni)s(e|es|ed|ing|ation)"
-                 r"|modell(ed|ing)|labell(ed|ing)|cancell(ed|ing)|travell(ed|ing))\b", "use American spelling", re.I),
+                 r"|modell(ed|ing)|labell(ed|ing)|cancell(ed|ing)|travell(ed|ing))(?![\w/])", "use American spelling", re.I),
     ("machine", r"AMD EPYC|Intel Xeon|\bZen \d|\bCPU[- ](s|seconds)\b", "machines and timings belong to docs/benchmarks", 0),
 ]]
 BARE_PAGE = re.compile(r"\bdocs/[a-z_/-]+\.md|(?<![\w/.-])[a-z_-]+\.md\b")
@@ -148,6 +148,8 @@ def source_paragraphs(text, comments):
             continue
         between = text[end:token.start()] if end >= 0 else ""
         words = re.sub(r"^///?<?|^/\*+|\*/$", "", token[0]) if is_comment else token[0]
+        if token[0].startswith("//   "):  # usage or code
+            words = ""
         if not is_comment:
             words = re.sub(r'^R"\w*\(|\)\w*"$|^"|"$', "", words)
         number = bisect.bisect_left(newlines, token.start()) + 1
@@ -159,6 +161,27 @@ def source_paragraphs(text, comments):
         lines = [(number + k, line.lstrip(" *")) for k, line in enumerate(words.replace("\\n", " ").replace('\\"', '"').splitlines())]
         if is_comment or joined or len(re.findall(r"[a-z]{2,}", words)) > 2:
             joined += [(at, line) for at, line in lines if line.strip()]
+    if joined:
+        yield Paragraph("text", joined)
+
+
+def script_paragraphs(text, is_python):
+    """Comments of scripts and docstrings of Python; an indented line begins a paragraph."""
+    docstring = r'(?:\A(?:#![^\n]*\n)?|:\n\s*)"""(.*?)"""' if is_python else r"(?!)()"
+    joined, last = [], -1
+    for match in re.finditer(docstring + r"|^[ ]*# ([^\n]*)", text, re.DOTALL | re.MULTILINE):
+        number = text.count("\n", 0, match.start(match.lastindex)) + 1
+        lines = (match[1] if match[2] is None else match[2]).splitlines()
+        if joined and (match[2] is None or number > last + 1):
+            yield Paragraph("text", joined)
+            joined = []
+        for k, line in enumerate(lines):
+            if joined and (not line.strip() or line.startswith(("usage:", " " * 7))):
+                yield Paragraph("text", joined)
+                joined = []
+            if line.strip() and not line.startswith(("usage:", " " * 7)):
+                joined.append((number + k, line))
+        last = number + len(lines) - 1
     if joined:
         yield Paragraph("text", joined)
 
@@ -202,10 +225,16 @@ def hits_of(path):
     """Yields group, line, rule, excerpt and advice of each hit in a file."""
     text = path.read_text(encoding="utf-8")
     if path.suffix in (".h", ".cpp"):
-        for comments, group in ((True, "comments"), (False, "messages")):
+        is_benchmark = "benchmarks" in path.parts
+        for comments, group in ((True, "scripts"),) if is_benchmark else ((True, "comments"), (False, "messages")):
             for paragraph in source_paragraphs(text, comments):
                 for hit in check_paragraph(paragraph, False, comments):
                     yield (group, *hit)
+        return
+    if path.suffix in (".py", ".sh"):
+        for paragraph in script_paragraphs(text, path.suffix == ".py"):
+            for hit in check_paragraph(paragraph, False, True):
+                yield ("scripts", *hit)
         return
     timings = "benchmarks" in path.parts or path.name == "CHANGELOG.md"
     group = group_of(path)
@@ -227,12 +256,12 @@ def group_of(page):
 def files_in(path):
     if path.is_file():
         return [path]
-    return sorted(file for file in path.rglob("*") if file.suffix in (".h", ".cpp", ".md", ".ipynb")
+    return sorted(file for file in path.rglob("*") if file.suffix in (".h", ".cpp", ".md", ".ipynb", ".py", ".sh")
                   and not {"node_modules", "_build"}.intersection(file.parts))
 
 
 def all_files():
-    paths = [ROOT / name for name in ("README.md", "CHANGELOG.md", "docs", "include", "src")]
+    paths = [ROOT / name for name in ("README.md", "CHANGELOG.md", "docs", "include", "src", "scripts", "tests/benchmarks")]
     return [file for path in paths for file in files_in(path)]
 
 

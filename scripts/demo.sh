@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds patchlight and solves the Cornell box. Safe to run again.
+# Installs missing packages, builds patchlight and solves the Cornell box. Safe to run again.
 # usage: scripts/demo.sh
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

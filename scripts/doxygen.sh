@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Doxygen's pages of the public headers, in FOLDER/html. Fails on every warning; only members of types may go without a
-# comment, where their names say all. Without doxygen it says so and ends well, unless CI is set.
+# comment, where their names say all. Without doxygen it prints a note and succeeds, unless CI is set.
 # usage: scripts/doxygen.sh [FOLDER]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

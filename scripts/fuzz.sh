@@ -28,7 +28,7 @@ for target in "${targets[@]}"; do
   mkdir -p "build-fuzz/found/$target" build-fuzz/broken
   echo "fuzz: $target for $seconds s"
   log=build-fuzz/$target.log
-  # Libraries free what they hold at the end of the process at best, so leaks are not looked for.
+  # Some libraries never free their memory, so leaks are not looked for.
   if ! ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 "build-fuzz/tests/fuzz/fuzz_$target" \
       -max_total_time="$seconds" -max_len=65536 -timeout=120 -rss_limit_mb=4096 \
       -artifact_prefix="build-fuzz/broken/$target-" "build-fuzz/found/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1; then

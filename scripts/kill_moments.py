@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Kills runs that write five files and a series at random moments, and looks at what is left.
+"""Kills runs that write five files and a series at random moments, and checks the remaining files.
 
 usage: scripts/kill_moments.py TOOL [--signal KILL|TERM|INT|HUP] [--moments N] [--seconds S] [--seed N]
 
@@ -26,7 +26,7 @@ from mutate import MATERIALS, POINTS, ROOM
 FILES = ("out.vtp", "out.ply", "out.png", "spots.csv", "out.json", "out.pvd")
 
 
-# Two lamps that give other colours, so that pictures differ, too.
+# Two lamps that give other colors, so that pictures differ, too.
 LAMPS = {1: "3,2,1", 2: "1,2,3"}
 
 
@@ -45,7 +45,7 @@ def check_series(folder):
 
 
 def fact(folder, name):
-    """What a file says of its run, but for the times in it."""
+    """The contents of a file about its run, without the times."""
     data = (folder / name).read_bytes()
     if name == "out.vtp":
         return data.rstrip().endswith(b"</VTKFile>")

@@ -7,9 +7,8 @@ usage: scripts/make_colour_tables.py FOLDER
 FOLDER has cie1931_2deg_xyz.csv and cie_d65.csv: wavelength in nm, values, by 5 nm. Needs numpy.
 
 The reflectances of primaries are those of Mallett and Yuksel 2019, "Spectral primary decomposition for rendering with
-sRGB reflectance" (Eurographics Symposium on Rendering): of all triples of spectra in [0, 1] that sum up to 1 and that
-have, under D65, the colours red, green and blue of 1, the smoothest, by the sum of the squares of the differences from
-knot to knot. They are computed here, by OSQP's method (Stellato et al. 2020, algorithm 1) and its polishing."""
+sRGB reflectance" (Eurographics Symposium on Rendering). They are the smoothest triple of spectra in [0, 1] that sum to 1 and have the
+colors red, green and blue under D65. The sum of the squared differences from knot to knot is least. They are computed here, by OSQP's method (Stellato et al. 2020, algorithm 1) and its polishing."""
 import pathlib
 import sys
 
@@ -52,7 +51,7 @@ def interpolation():
 
 
 def observer_in_cells(values):
-    """By polynomials through four knots, CIE 15:2004, 7.2.1."""
+    """Interpolation by polynomials through four knots, CIE 15:2004, 7.2.1."""
     cells = np.zeros(CELLS.size)
     for cell, wavelength in enumerate(CELLS):
         first = min(max(int((wavelength - 380) // 5) - 1, 0), KNOTS.size - 4)
@@ -83,7 +82,7 @@ def smoothest(H, A, low, high):
         Ax = A @ x
         z = np.clip(Ax + y / rho, low, high)
         y = y + rho * (Ax - z)
-    # Polishing: what is active holds exactly.
+    # Polishing: active constraints hold exactly.
     for _ in range(50):
         at_low, at_high = (y < -1e-9) | is_equal, (y > 1e-9) & ~is_equal
         active = at_low | at_high

@@ -72,7 +72,7 @@ def sphere(model, material, centre, radius, rings):
 
 
 def things(random, count, lamp_height, are_spheres):
-    """Places that keep clear of each other and of the lamps: (centre, half edges, angle, reflectance)."""
+    """Places that keep clear of each other and of the lamps: (center, half edges, angle, reflectance)."""
     taken = [((x, y, lamp_height), 0.45, 0.05) for x in (2.5, 7.5) for y in (2, 6)]
     found = []
     while len(found) < count:
@@ -109,7 +109,7 @@ def room(name, count, are_spheres=False, shines_up=False, rings=0):
         for y in (2, 6):
             turned_box(model, "housing", (x, y, lamp_height), (0.3, 0.3, 0.02), 0, False, {(2, int(shines_up)): "light"})
     model.group("things")
-    for k, (centre, half, angle, _) in enumerate(placed):
+    for k, (center, half, angle, _) in enumerate(placed):
         if are_spheres:
             sphere(model, f"thing{k}", centre, half[0], rings)
         else:

@@ -55,7 +55,7 @@ class Model:
 
 
 def number(x):
-    """Lengths to a tenth of a millimetre and no tails of zeros."""
+    """Lengths to a tenth of a millimeter and no tails of zeros."""
     text = f"{x:.4f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -69,7 +69,7 @@ def grey(value):
 
 
 def box(model, material, low, high, sides="+x-x+y-y+z-z", inward=False, materials=None):
-    """The named sides of an axis-aligned box, normals outward unless told; `materials` overrides single sides."""
+    """The named sides of an axis-aligned box, normals outward by default; `materials` overrides single sides."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     quads = {
         "-x": [(x0, y0, z0), (x0, y0, z1), (x0, y1, z1), (x0, y1, z0)],

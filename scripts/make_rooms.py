@@ -2,7 +2,7 @@
 """Writes the rooms that the benchmarks of form factors run in, watertight OBJ models with normals into the room.
 
 usage: scripts/make_rooms.py FOLDER
-closed_room_N.obj: a unit cube with two blocks whose faces are grids of N squares per metre, halved into triangles;
+closed_room_N.obj: a unit cube with two blocks whose faces are grids of N squares per meter, cut into triangles;
 boxes_500.obj: a room of 8 x 8 x 3 m with 80 boxes on its floor and 420 that hang free, at random places.
 """
 
@@ -17,7 +17,7 @@ BLOCKS = [((0.1, 0.2), (0.4, 0.5), 0.3), ((0.5, 0.5), (0.8, 0.8), 0.6)]
 
 
 def halved_grid(model, place, counts, is_left_out=lambda u, v: False):
-    """Squares halved into triangles; place(u, v) is a grid point, right-handed with the normal."""
+    """Squares cut into triangles; place(u, v) is a grid point, right-handed with the normal."""
     for u in range(counts[0]):
         for v in range(counts[1]):
             if is_left_out(u, v):
@@ -52,12 +52,12 @@ def grid_box(model, low, high, n, inward, is_left_out):
 
 
 def closed_room(n):
-    comment = [f"A closed unit cube with two blocks on its floor; faces are grids of spacing 1/{n} halved into triangles."]
+    comment = [f"A closed unit cube with two blocks on its floor; faces are grids of spacing 1/{n} cut into triangles."]
     model = Model(f"closed_room_{n}", comment, [Material("wall", grey(0.5))])
     in_cells = [[tuple(round(x * n) for x in corner) for corner in (a, b)] + [round(h * n)] for a, b, h in BLOCKS]
     covered = {(x, y) for a, b, _ in in_cells for x in range(a[0], b[0]) for y in range(a[1], b[1])}
     model.group("room")
-    # Seen from inside, the floor's first direction is x: covered cells are asked for as (x, y).
+    # Seen from inside, the floor's first direction is x: covered cells are given as (x, y).
     grid_box(model, (0, 0, 0), (n, n, n), n, True, lambda x, y: (x, y) in covered)
     for k, (a, b, height) in enumerate(in_cells):
         model.group(f"block_{k + 1}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the scenes with spectra in meshes/: a colour chart in a grey box under illuminants D65 and A, and the Cornell
+"""Writes the scenes with spectra in meshes/: a color chart in a gray box under illuminants D65 and A, and the Cornell
 box with its measured paints and lamp; their spectra stand in meshes/spectra.
 
 usage: scripts/make_spectral_scenes.py FOLDER [--check]
@@ -62,7 +62,7 @@ def spectra_of(file):
 
 
 def file_name(name):
-    """"white 9.5 (.05 D)" is white_9_5."""
+    """"white 9.5 (0.05 D)" is white_9_5."""
     return name.split(" (")[0].replace(" ", "_").replace(".", "_")
 
 

@@ -79,7 +79,7 @@ def panel_ies():
 
 
 class Ifc:
-    """Entities of an IFC4 file in metres."""
+    """Entities of an IFC4 file in meters."""
 
     def __init__(self, name):
         self.lines, self.identifiers = [], 0

@@ -2,7 +2,7 @@
 """Writes twelve rooms in which accuracy is measured, as OBJ models.
 
 usage: scripts/make_varied_rooms.py FOLDER
-Metres, z up; each room stresses something else: see the comment in its file.
+Meters, z up; each room stresses something else: see the comment in its file.
 """
 
 import math

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the tool on damaged files of every kind it reads, and reports what it must not do.
+"""Runs the tool on damaged files of every kind it reads, and reports forbidden behavior.
 
 usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...]
        [--commands A,B,...] [--keep FOLDER]
@@ -7,8 +7,8 @@ usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [-
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, brackets piled
 up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s of the
 processor, or returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
-with sanitizers; --commands check,plan tries what reads alone, at a fraction of the time. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
-line every 500 runs says how far it has come. Bad inputs are kept in FOLDER (default: mutate_found).
+with sanitizers; --commands check,plan tries the readers alone, in a fraction of the time. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
+line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default: mutate_found).
 """
 import argparse
 import concurrent.futures
@@ -206,7 +206,7 @@ def damaged(data, chance):
 
 
 def run_one(tool, cases, kinds, seed, number, keep):
-    """Run `number`: nothing when it is good, else what is bad about it."""
+    """Run `number`: nothing when it is good, else its fault."""
     chance = random.Random(f"{seed} {number}")
     kind = kinds[number % len(kinds)]
     files, name, commands = chance.choice(cases[kind])

@@ -7,9 +7,9 @@ From the command line, with or without a picture:
 
 In ParaView's window: Macros > Import new macro, choose this file, open a result, press the macro's button.
 
-Of a result it shows the colours `rgb_smooth` of the points, or, with --patches before the file, `rgb` of the patches, one
-colour each, as of a series. They are final: they must not go through a colour map (Map Scalars off) nor be shaded again
-(lighting off). Back faces are culled, so that a room can be looked into through its walls.
+It shows the colors `rgb_smooth` of the points of a result. With --patches before the file, or for a series, it shows
+`rgb`, one color per patch. These colors are final: no color map (Map Scalars off) and no shading (lighting off) apply.
+Back faces are culled, so that you look into a room through its walls.
 """
 import sys
 
@@ -25,12 +25,12 @@ def set_where_known(proxy, **values):
 
 
 def show_colours(source, view, of_patches=False):
-    """Shows the colours of the source in the view just as they are."""
+    """Shows the colors of the source in the view just as they are."""
     display = simple.Show(source, view)
     display.Representation = "Surface"
     is_smooth = not of_patches and source.PointData.GetArray("rgb_smooth") is not None
     simple.ColorBy(display, ("POINTS", "rgb_smooth") if is_smooth else ("CELLS", "rgb"))
-    # ColorBy has made a colour map: leave it out.
+    # ColorBy has made a color map: leave it out.
     display.MapScalars = 0
     display.SetScalarBarVisibility(view, False)
     # Unlit: where lighting cannot be switched off, all light is ambient and none is reflected.

@@ -23,12 +23,12 @@ COLUMNS = ["iteration", "applications", "seconds", "true_error"]
 
 
 def number(text):
-    """Of a field; an empty one is not a number."""
+    """The number in a field; an empty field is not a number."""
     return float(text) if text else math.nan
 
 
 def read_history(file):
-    """By solver, in the order of the file: its rows, each {column: number} with what is drawn."""
+    """The rows of each solver, in the order of the file, each {column: number}."""
     solvers = {}
     with file.open(newline="", encoding="utf-8") as lines:
         for row in csv.DictReader(lines):
@@ -40,7 +40,7 @@ def read_history(file):
 def draw(pyplot, solvers, column, label):
     figure, axes = pyplot.subplots(figsize=(9, 6), dpi=100, layout="constrained")
     for k, (name, rows) in enumerate(solvers.items()):
-        # What is not above 0 has no place on a logarithmic axis.
+        # Values must be positive on a logarithmic axis.
         points = [(row[column], row["true_error"]) for row in rows if 0 < row["true_error"] < math.inf]
         axes.plot([x for x, _ in points], [y for _, y in points], label=name, color=COLOURS[k % len(COLOURS)],
                   linestyle=DASHES[k // len(COLOURS) % len(DASHES)], marker=MARKERS[k % len(MARKERS)], markersize=5,

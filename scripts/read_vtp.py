@@ -7,7 +7,7 @@ CODES = {"Float32": "f", "Float64": "d", "Int32": "i", "Int64": "q", "UInt8": "B
 
 
 def lz4_block(data, size):
-    """The bytes of a block of LZ4: literals, then matches in what is there already."""
+    """The bytes of a block of LZ4: literals, then matches in the bytes before."""
     out, k = bytearray(), 0
 
     def length(nibble):

@@ -7,7 +7,7 @@ OLD_TOOL may be the folder `old` of an earlier run with --keep.
 
 For changes of the code that are meant to leave the answers alone. Bytes are compared first; where they differ,
 the numbers of JSON, CSV and text files, but for times, and the names of the differing values are printed. Arrays of .vtp
-and numpy files have to be the same bytes. What is printed is not compared, and there is no daylight. The exit code is 1
+and numpy files have to be the same bytes. Printed text is not compared, and there is no daylight. The exit code is 1
 when a number differs by more than SHARE (default 0: the same bits) of it. Takes about two minutes.
 """
 import argparse
@@ -89,7 +89,7 @@ def numbers_of(file):
 
 
 def apart(a, b):
-    """How far two values are apart, as a share of the larger; 1 for what is no number."""
+    """How far two values are apart, as a share of the larger; 1 if one is not a number."""
     try:
         x, y = float(a), float(b)
     except (TypeError, ValueError):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds patchlight and runs every test. Safe to run again.
+# Installs missing packages, builds patchlight and runs every test. Safe to run again.
 # usage: scripts/test.sh [PRESET]    a preset of CMakePresets.json; default: checked, which is optimised and has asserts.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

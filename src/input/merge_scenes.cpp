@@ -97,9 +97,8 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   scene.rooms.insert(scene.rooms.end(), added.rooms.begin(), added.rooms.end());
   scene.luminaires.insert(scene.luminaires.end(), added.luminaires.begin(), added.luminaires.end());
   if ((scene.sun && added.sun) || (scene.sky && added.sky))
-    scene.problems.push_back({.kind = ProblemKind::left_out,
-                              .count = 1,
-                              .what = added.file + ": its sun or sky is left out, as an earlier file has one"});
+    scene.problems.push_back(
+        {ProblemKind::left_out, 1, added.file + ": its sun or sky is left out, as an earlier file has one", {}, 0});
   if (!scene.sun) scene.sun = added.sun;
   if (!scene.sky) scene.sky = added.sky;
   scene.files.push_back(added.file);

@@ -39,7 +39,7 @@
 namespace patchlight {
 namespace {
 
-std::string counted(std::size_t count, std::size_t of, const std::string& noun) {
+std::string share_in_words(std::size_t count, std::size_t of, const std::string& noun) {
   return std::to_string(count) + " of " + std::to_string(of) + " " + noun + (of == 1 ? "" : "s");
 }
 
@@ -60,8 +60,8 @@ std::string what_has_spectra(const Scene& scene) {
         ++lights;
         with_spectrum += spectrum ? 1 : 0;
       });
-  return counted(materials, scene.materials.size(), "material") + " and " + counted(with_spectrum, lights, "light") +
-         " have spectra";
+  return share_in_words(materials, scene.materials.size(), "material") + " and " +
+         share_in_words(with_spectrum, lights, "light") + " have spectra";
 }
 
 std::string bands_in_words(std::size_t number) { return std::to_string(number) + (number == 1 ? " band" : " bands"); }

@@ -1,6 +1,6 @@
 // Compares the irradiance of the open Cornell box with that of two independent renderers, at points.
 // usage: benchmark_cornell_reference FOLDER PATCHES...
-// FOLDER holds cornell.obj (millimetres) and cornell_reference.csv:
+// FOLDER holds cornell.obj (millimeters) and cornell_reference.csv:
 // sensor,i,j,x,y,z,nx,ny,nz,E_r,E_g,E_b,se_r,se_g,se_b,flag.
 #include "patchlight/gather/gather.h"
 #include "patchlight/input/read_scene.h"
@@ -32,7 +32,7 @@ struct Reference {
   Field standard_error;
 };
 
-// The rows without a flag, in metres.
+// The rows without a flag, in meters.
 Reference read_reference(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;

@@ -1,4 +1,4 @@
-// The error of what progressive refinement shows, rows of form factors on demand, against the share of rows computed.
+// The error of progressive refinement, with rows of form factors on demand, against the fraction of computed rows.
 // usage: benchmark_progressive OUT PATCHES MODEL...
 // Prints a table per model; OUT takes progressive.png, and MODEL.csv with all that was measured.
 #include "patchlight/input/read_scene.h"
@@ -81,7 +81,7 @@ double error_of(const Field& radiosity, const Reference& reference) {
   return (area_norm(reference.radiosity - radiosity, area) / area_norm(reflected, area)).maxCoeff();
 }
 
-// What is shown after so many rows.
+// The picture after so many rows.
 struct Shown {
   double rows = 0;  // share of all
   double cpu_seconds = 0;

@@ -64,7 +64,7 @@ class CheckProseTest(unittest.TestCase):
             return sorted(hit[2] for hit in check_prose.hits_of(page))
 
     def test_finds_each_rule(self):
-        for text, rule in (("See, what is new.", "relative"), ("What is new stays.", "front"), ("The tool tells it.", "tell"), ("Small, as in rooms.", "as"),
+        for text, rule in (("See, what is new.", "relative"), ("What is new stays.", "front"), ("The tool tells it.", "tell"), ("Small, as by rays.", "as"), ("It is small, as 5cm.", "as"),
                            ("Below .3 of it.", "decimal"), ("It errs.", "archaic"), ("In some 12 rooms.", "some"), ("They are wanted.", "wanted"),
                            ("They take part.", "part"), ("A grey wall.", "spelling"), ("On an Intel Xeon.", "machine"), ("See docs/page.md here.", "page"),
                            ("word " * 36 + ".", "long")):

@@ -45,7 +45,7 @@ struct MitsubaMeshes {
   std::vector<Problem> losses;               // parts that are left out
 };
 
-constexpr std::array shapes = {"obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"};
+constexpr std::array kinds_of_shapes = {"obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"};
 
 // From -1 to 1 in x and y; its front looks along +z.
 FacetedShape rectangle() { return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2, 3}}}; }
@@ -93,7 +93,9 @@ FacetedShape cylinder_of(const MitsubaFile& file, const pugi::xml_node& shape) {
 }
 
 // The kinds of shapes that can be read: obj, ply, rectangle, cube, sphere, disk and cylinder.
-bool is_mitsuba_shape(const std::string& kind) { return std::find(shapes.begin(), shapes.end(), kind) != shapes.end(); }
+bool is_mitsuba_shape(const std::string& kind) {
+  return std::find(kinds_of_shapes.begin(), kinds_of_shapes.end(), kind) != kinds_of_shapes.end();
+}
 
 // The faces of a shape before its transformation. Nothing when the file of a mesh is not there. Throws InputError
 // naming the line, or the mesh's file.
@@ -126,7 +128,7 @@ struct MitsubaMaterial {
 constexpr std::array wrappers = {"twosided", "bumpmap", "bump",         "normalmap", "mask",
                                  "opacity",  "coating", "roughcoating", "blendbsdf", "mixturebsdf"};
 // The properties that may say what a surface reflects, the first one counts.
-constexpr std::array colours = {"reflectance", "diffusereflectance", "basecolor", "specularreflectance"};
+constexpr std::array color_names = {"reflectance", "diffusereflectance", "basecolor", "specularreflectance"};
 constexpr std::array glass_kinds = {"dielectric", "thindielectric", "roughdielectric"};
 constexpr std::array conductors = {"conductor", "roughconductor"};
 
@@ -204,7 +206,7 @@ class MaterialReader {
 
   void add_matt(const pugi::xml_node& bsdf, const std::string& kind) {
     std::optional<Spectrum> found;
-    for (const char* const name : colours) {
+    for (const char* const name : color_names) {
       if (!found) found = colour(bsdf, name);
     }
     const bool is_matt = kind == "diffuse" || kind == "lambertian";

@@ -131,7 +131,7 @@ std::vector<Pixel> marked_points(const std::vector<Pixel>& points, std::size_t c
 
 // All lengths in pixels.
 constexpr double edge = 16;
-constexpr double gap = 8;
+constexpr double label_gap = 8;
 constexpr double tick_length = 5;
 constexpr double title_size = 16;
 constexpr double label_size = 14;
@@ -190,7 +190,7 @@ std::vector<Tick> ticks_side_by_side(cairo_t* cairo, const AxisView& axis) {
   std::vector<Tick> ticks = axis.ticks;
   for (int most = most_labels(axis.scale); most > 2; --most) {
     ticks = axis_ticks(axis.range, axis.scale, most);
-    const double room = gap + widest_label(cairo, ticks);
+    const double room = label_gap + widest_label(cairo, ticks);
     double last = axis.from - room;
     const bool touching = std::any_of(ticks.begin(), ticks.end(), [&](const Tick& tick) {
       if (tick.text.empty()) return false;
@@ -213,16 +213,16 @@ double legend_width(cairo_t* cairo, const Plot& plot) {
   for (const Curve& curve : plot.curves) {
     width = std::max(width, text_width(cairo, fitting_text(cairo, curve.name, widest_name)));
   }
-  return plot.curves.empty() ? 0 : 2 * gap + swatch + gap + width;
+  return plot.curves.empty() ? 0 : 2 * label_gap + swatch + label_gap + width;
 }
 
 // The frame leaves room for the title above, the legend at the right, numbers and labels at the left and below.
 PlotView plot_view(cairo_t* cairo, const Plot& plot) {
   PlotView view{axis_view(plot, 0), axis_view(plot, 1)};
-  view.y.from = plot_height - edge - label_size - gap - number_size - gap - tick_length;
-  view.y.to = edge + (plot.title.empty() ? 0 : title_size + gap);
+  view.y.from = plot_height - edge - label_size - label_gap - number_size - label_gap - tick_length;
+  view.y.to = edge + (plot.title.empty() ? 0 : title_size + label_gap);
   set_text_size(cairo, number_size);
-  view.x.from = edge + label_size + gap + widest_label(cairo, view.y.ticks) + gap + tick_length;
+  view.x.from = edge + label_size + label_gap + widest_label(cairo, view.y.ticks) + label_gap + tick_length;
   set_text_size(cairo, name_size(row_height(plot, view.y.from - view.y.to)));
   const double legend = legend_width(cairo, plot);
   set_text_size(cairo, number_size);
@@ -255,7 +255,7 @@ void draw_grid(cairo_t* cairo, const AxisView& axis, const AxisView& other, bool
 // Ticks out of the frame, with their numbers: below the axis, or left of the upright one.
 void draw_ticks(cairo_t* cairo, const AxisView& axis, double edge_of_frame, bool upright) {
   const double out = upright ? -1 : 1;
-  const double to_number = tick_length + (upright ? gap / 2 : gap + number_size / 2);
+  const double to_number = tick_length + (upright ? label_gap / 2 : label_gap + number_size / 2);
   for (const Tick& tick : axis.ticks) {
     const double along = axis.pixel(tick.value), length = tick.text.empty() ? tick_length / 2 : tick_length;
     stroke_line(cairo, place(upright, along, edge_of_frame), place(upright, along, edge_of_frame + out * length));
@@ -279,7 +279,7 @@ void draw_texts(cairo_t* cairo, const Plot& plot, const PlotView& view) {
   const double width = view.x.to - view.x.from, height = view.y.from - view.y.to;
   set_grey(cairo, 0.1);
   set_text_size(cairo, title_size);
-  draw_text(cairo, {view.x.from, edge + title_size / 2 - gap / 2},
+  draw_text(cairo, {view.x.from, edge + title_size / 2 - label_gap / 2},
             fitting_text(cairo, plot.title, plot_width - edge - view.x.from), Align::left);
   set_text_size(cairo, label_size);
   draw_text(cairo, {view.x.from + width / 2, plot_height - edge - label_size / 2},
@@ -307,13 +307,14 @@ void draw_curves(cairo_t* cairo, const Plot& plot, const PlotView& view) {
 void draw_legend(cairo_t* cairo, const Plot& plot, const PlotView& view) {
   const double row = row_height(plot, view.y.from - view.y.to);
   set_text_size(cairo, name_size(row));
-  const double left = view.x.to + 2 * gap;
+  const double left = view.x.to + 2 * label_gap;
   for (std::size_t k = 0; k < plot.curves.size(); ++k) {
     const double y = view.y.to + (static_cast<double>(k) + 0.5) * row;
     draw_line(cairo, {{left, y}, {left + swatch, y}}, k);
     draw_marker(cairo, {left + swatch / 2, y}, k);
     set_grey(cairo, 0.1);
-    draw_text(cairo, {left + swatch + gap, y}, fitting_text(cairo, plot.curves[k].name, widest_name), Align::left);
+    draw_text(cairo, {left + swatch + label_gap, y}, fitting_text(cairo, plot.curves[k].name, widest_name),
+              Align::left);
   }
 }
 

@@ -14,9 +14,11 @@
 namespace patchlight {
 namespace {
 
+// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
+using Json = nlohmann::ordered_json;
+
 // What sensors read, group by group, as a part of the report.
-nlohmann::ordered_json sensors_part(const SensorFacts& sensors) {
-  using Json = nlohmann::ordered_json;
+Json sensors_part(const SensorFacts& sensors) {
   Json part;
   part["unit"] = sensors.unit;
   part["groups"] = Json::array();
@@ -45,8 +47,7 @@ constexpr auto note_on_coarse =
     "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
 
 // What floor, walls and ceiling of each room get, as a part of the report.
-nlohmann::ordered_json rooms_part(const Report& report) {
-  using Json = nlohmann::ordered_json;
+Json rooms_part(const Report& report) {
   Json part;
   part["unit"] = report.unit;
   part["rooms"] = Json::array();
@@ -66,9 +67,6 @@ nlohmann::ordered_json rooms_part(const Report& report) {
   }
   return part;
 }
-
-// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
-using Json = nlohmann::ordered_json;
 
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json json_of(const std::optional<std::size_t>& value) { return value ? Json(*value) : Json(); }

@@ -1,8 +1,8 @@
 // Faces of one opacity and layer together, opaque ones first: {opacity, layer, faces}.
-function grouped(faces, opacityOf, layerOf) {
+function grouped(faces, opacityOf, layerOf, dark) {
   const groups = new Map();
   faces.row.forEach((row, face) => {
-    const opacity = opacityOf(row), layer = layerOf(row), key = `${1 - opacity} ${layer}`;
+    const opacity = opacityOf(row), layer = layerOf(row) + dark[row], key = `${1 - opacity} ${layer}`;
     if (!groups.has(key)) groups.set(key, {opacity, layer, faces: []});
     groups.get(key).faces.push(face);
   });
@@ -21,8 +21,9 @@ function outwardOf(corners, normal) {
 
 // The faces of the page as triangles, three corners each, around the middle of their bounds. `groups` says which
 // triangles have which opacity and layer. A face with others over it is sunk by the rounding of positions, layer by
-// layer. Opaque faces have a way `outward` for each corner, in units of 1/63.5: the shader lets neighbours overlap.
-function triangles(faces, opacityOf, layerOf) {
+// layer, and a dark one once more. Opaque faces with light have a way `outward` for each corner, in units of 1/63.5:
+// the shader lets neighbours overlap.
+function triangles(faces, opacityOf, layerOf, dark) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
   const step = Math.max(...low.map((value, axis) => high[axis] - value)) / 65535;
@@ -42,13 +43,13 @@ function triangles(faces, opacityOf, layerOf) {
     });
     faceOf[next++] = face;
   };
-  const groups = grouped(faces, opacityOf, layerOf).map(({opacity, layer, faces: own}) => {
+  const groups = grouped(faces, opacityOf, layerOf, dark).map(({opacity, layer, faces: own}) => {
     const first = next;
     for (const face of own) {
       const [a, b, c, d] = faces.corners.subarray(4 * face, 4 * face + 4);
       const places = (c === d ? [a, b, c] : [a, b, c, d]).map(at);
       const normal = new THREE.Vector3().subVectors(places[2], places[0]).cross(new THREE.Vector3().subVectors(places[places.length - 1], places[1])).normalize();
-      const ways = opacity === 1 ? outwardOf(places, normal) : null;
+      const ways = opacity === 1 && dark[faces.row[face]] === 0 ? outwardOf(places, normal) : null;
       for (const place of places) place.addScaledVector(normal, -2 * step * layer);
       add(face, [0, 1, 2], places, ways);
       if (c !== d) add(face, [0, 2, 3], places, ways);

@@ -1,6 +1,6 @@
 // So far, in pixels, faces reach over their edges: the rounding of a corner that lies on a neighbour's edge leaves gaps
 // of less.
-const overlap = 0.4;
+const overlap = 0.15;
 
 // Faces that overlap their neighbours, by the rounding of positions and a part of a pixel. `reach` holds both.
 function withOverlap(material, reach) {
@@ -52,7 +52,7 @@ function skyDome({directions, inARing}) {
 // The model on its canvas. Coordinates inside are metres from the middle of its bounds. Throws where there is no WebGL.
 function modelView(canvas, model) {
   const {faces, up} = model;
-  const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]], (row) => model.rows.layer[row]);
+  const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]], (row) => model.rows.layer[row], model.rows.dark);
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
   renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--stage").trim());
   const geometry = new THREE.BufferGeometry();
