@@ -90,7 +90,7 @@ constexpr double seconds_per_entry = 1.1e-10;
 
 // A sensor sends four rays to each patch before it, some thousands more to all together, and by daylight, which comes
 // through few openings, many more: of 500 to 1,600 sensors in the Cornell box and two rooms (1,900 to 19,000 patches),
-// a duplex and a house (docs/models.md; 2,900 to 41,000).
+// a duplex and a house (docs/benchmarks/real-models.md; 2,900 to 41,000).
 constexpr double seconds_per_sensor = 1.2e-3;
 constexpr double seconds_per_patch_of_sensor = 3.4e-7;
 constexpr double seconds_per_sensor_by_daylight = 1.4e-2;

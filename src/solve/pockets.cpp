@@ -137,8 +137,8 @@ BandBlock iterated(const Pocket& pocket, const BandBlock& reflectance, const Ban
 }
 
 // Light that is still there after as many bounces among all patches, and then among those that have kept it so far.
-// With 16 more of the latter fewer patches are followed apart, and the kitchen of docs/models.md takes 30 iterations,
-// not 19.
+// With 16 more of the latter fewer patches are followed apart, and the kitchen of docs/benchmarks/real-models.md takes
+// 30 iterations, not 19.
 constexpr int first_bounces = 4;
 constexpr int more_bounces = 8;
 constexpr double kept_share = 0.5;

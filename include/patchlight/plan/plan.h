@@ -98,7 +98,7 @@ struct Given {
 };
 
 /// The solver's relative error when none is asked for and rows are of so many rays: about a tenth of what they
-/// err, docs/models.md.
+/// err, docs/benchmarks/real-models.md.
 inline double default_ray_tolerance(int rays) { return 4e-3 / std::sqrt(rays); }
 
 /// The number of patches when nothing is asked for: a few seconds' work on two cores.
