@@ -348,22 +348,24 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
   return part ? " with " + with_option_names(*part) : "\nhint: --error-bars computes it, in about twice the time";
 }
 
-// Prints notes, warnings and the summary.
+// Prints warnings, then the results that the user asked for, the files, the facts of the run, and notes.
 void print_results(const SolveArguments& arguments, const Results& results,
                    const std::vector<std::filesystem::path>& written, const std::string& note_on_checkpoint) {
-  const bool quiet = arguments.verbosity == Verbosity::quiet;
-  if (!note_on_checkpoint.empty() && !quiet) print_message("note", note_on_checkpoint);
-  print_notes(notes(results.scene, results.simulation), quiet);
+  constexpr std::size_t most_notes = 5;
+  const bool is_quiet = arguments.verbosity == Verbosity::quiet;
+  const bool is_verbose = arguments.verbosity == Verbosity::verbose;
   for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
   if (results.views.picture) {
     if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
   }
-  if (!quiet) {
-    std::cout << summary(results.report, arguments.verbosity == Verbosity::verbose,
-                         how_to_know_errors(arguments, results.report.solution.unfinished));
-    if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
-    std::cout << files_line(written) << std::flush;
-  }
+  if (is_quiet) return;
+  std::cout << summary_of_results(results.report, is_verbose,
+                                  how_to_know_errors(arguments, results.report.solution.unfinished));
+  if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
+  std::cout << files_line(written) << summary_of_run(results.report, is_verbose) << std::flush;
+  std::vector<std::string> all = notes(results.scene, results.simulation);
+  if (!note_on_checkpoint.empty()) all.insert(all.begin(), note_on_checkpoint);
+  print_notes(all, false, is_verbose ? all.size() : most_notes);
 }
 
 // Warns of results that are worse than those asked for.

@@ -195,25 +195,30 @@ std::string details(const Report& report) {
 
 std::string error_text(double error) { return std::isnan(error) ? "not known" : rounded(error, 2); }
 
+// A line for each group of sensors: the mean and its standard error first.
 std::string sensor_lines(const Report& report, const std::string& how_to_know_errors) {
   const SensorFacts& sensors = report.sensors;
   if (sensors.groups.empty()) return {};
   const std::string in_unit = ", " + sensors.unit;
-  std::vector<TextRow> rows = {{"sensors", "number", "inside walls", "min" + in_unit, "mean" + in_unit,
-                                "its standard error" + in_unit, "max" + in_unit, "U0",
-                                "largest standard error" + in_unit}};
-  if (sensors.daylight) rows[0].emplace_back("mean daylight factor, %");
+  const bool some_inside_walls = std::any_of(sensors.groups.begin(), sensors.groups.end(),
+                                             [](const GroupReadings& group) { return group.inside_walls > 0; });
+  std::vector<TextRow> rows = {{"sensors", "number", "mean" + in_unit, "±" + in_unit, "min" + in_unit, "max" + in_unit,
+                                "U0", "largest ±" + in_unit}};
+  if (sensors.daylight) rows[0].emplace_back("daylight factor, %");
+  if (some_inside_walls) rows[0].emplace_back("inside walls");
   for (const GroupReadings& group : sensors.groups) {
-    rows.push_back({group.name, std::to_string(group.sensors), std::to_string(group.inside_walls)});
-    if (group.inside_walls == group.sensors) continue;
-    rows.back().insert(rows.back().end(),
-                       {rounded(group.min), rounded(group.mean), error_text(group.standard_error_of_mean),
-                        rounded(group.max), rounded(group.uniformity), error_text(group.largest_standard_error)});
-    if (group.mean_daylight_factor) rows.back().push_back(rounded(*group.mean_daylight_factor));
+    rows.push_back({group.name, std::to_string(group.sensors)});
+    if (group.inside_walls < group.sensors)
+      rows.back().insert(rows.back().end(),
+                         {rounded(group.mean), error_text(group.standard_error_of_mean), rounded(group.min),
+                          rounded(group.max), rounded(group.uniformity), error_text(group.largest_standard_error)});
+    rows.back().resize(8);
+    if (sensors.daylight) rows.back().push_back(group.mean_daylight_factor ? rounded(*group.mean_daylight_factor) : "");
+    if (some_inside_walls) rows.back().push_back(std::to_string(group.inside_walls));
   }
   if (!report.accuracy.empty()) return text_table(rows);
   return text_table(rows) +
-         "the mesh part of the sensors' standard errors is only an estimate; behind slits and louvres it can be ten "
+         "the mesh part of the sensors' standard errors is only an estimate; behind slits and louvers it can be ten "
          "times too small" +
          how_to_know_errors + '\n';
 }
@@ -233,16 +238,21 @@ std::string effects_line(const std::vector<Decision>& decisions) {
 }  // namespace
 
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
-  std::vector<std::string> all = remarks_of(scene);
+  std::vector<std::string> all = simulation.notes;
+  const std::vector<std::string> of_scene = remarks_of(scene);
   const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
+  all.insert(all.end(), of_scene.begin(), of_scene.end());
   all.insert(all.end(), of_sides.begin(), of_sides.end());
-  all.insert(all.end(), simulation.notes.begin(), simulation.notes.end());
   return all;
 }
 
-void print_notes(const std::vector<std::string>& notes, bool quiet) {
+void print_notes(const std::vector<std::string>& notes, bool quiet, std::size_t most) {
   if (quiet) return;
-  for (const std::string& note : notes) print_message("note", note);
+  const std::size_t shown = std::min(most, notes.size());
+  for (std::size_t k = 0; k < shown; ++k) print_message("note", notes[k]);
+  if (shown < notes.size())
+    print_message("note", std::to_string(notes.size() - shown) +
+                              " more notes\nhint: --verbose prints them, --json FILE has them");
 }
 
 // An axis that was guessed: the model's floors may be walls.
@@ -251,7 +261,19 @@ std::string upright(const SceneFacts& scene) {
   return std::string(scene.up.y() > scene.up.z() ? "y" : "z") + " is the vertical axis (guessed), ";
 }
 
-std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors) {
+std::string summary_of_results(const Report& report, bool long_form, const std::string& how_to_know_errors) {
+  std::string text = sensor_lines(report, how_to_know_errors);
+  if (!report.accuracy.empty() && report.solution.converged) text += errors(report) + '\n' + advice_on_errors(report);
+  if (report.accuracy.empty() && report.form_factors.ray_error)
+    text += "error of the rays: " + percent(*report.form_factors.ray_error, 2) +
+            " % of the reflected light; the error of the mesh is not known" + how_to_know_errors + '\n';
+  else if (report.accuracy.empty())
+    text += "errors of mesh and form factors: not known" + how_to_know_errors + '\n';
+  if (long_form && report.accuracy.size() > 1) text += steps_table(report.accuracy);
+  return text;
+}
+
+std::string summary_of_run(const Report& report, bool long_form) {
   std::ostringstream text;
   const Vector& size = report.scene.size;
   text << shown_name(report.scene.file) << ": " << rounded(size.x()) << " x " << rounded(size.y()) << " x "
@@ -259,16 +281,8 @@ std::string summary(const Report& report, bool long_form, const std::string& how
        << report.patches << " patches with edges up to " << rounded(report.plan.max_edge) << " m\n";
   text << effects_line(report.plan.decisions);
   if (long_form) text << details(report);
-  text << convergence(report) << '\n';
-  if (!report.accuracy.empty() && report.solution.converged) text << errors(report) << '\n' << advice_on_errors(report);
-  if (report.accuracy.empty() && report.form_factors.ray_error)
-    text << "error of the rays: " << percent(*report.form_factors.ray_error, 2)
-         << " % of the reflected light; the error of the mesh is not known" << how_to_know_errors << '\n';
-  else if (report.accuracy.empty())
-    text << "errors of mesh and form factors: not known" << how_to_know_errors << '\n';
-  if (long_form && report.accuracy.size() > 1) text << steps_table(report.accuracy);
-  text << energy(report) << '\n' << seconds(report.costs) << '\n';
-  return text.str() + sensor_lines(report, how_to_know_errors);
+  text << convergence(report) << '\n' << energy(report) << '\n' << seconds(report.costs) << '\n';
+  return text.str();
 }
 
 std::string files_line(const std::vector<std::filesystem::path>& files) {

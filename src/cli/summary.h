@@ -3,22 +3,29 @@
 #include "patchlight/report/report.h"
 #include "patchlight/simulate.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace patchlight::cli {
 
-/// Remarks on the scene, its sides and the run, without the warnings of print_scene_warnings().
+/// Remarks on the run, the scene and its sides, without the warnings of print_scene_warnings(). Those that say most
+/// about the results stand first.
 std::vector<std::string> notes(const Scene& scene, const Simulation& simulation);
 
-/// Prints the notes unless the run is quiet.
-void print_notes(const std::vector<std::string>& notes, bool quiet);
+/// Prints the first `most` notes and the number of the others, unless the run is quiet.
+void print_notes(const std::vector<std::string>& notes, bool quiet,
+                 std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// A few lines: patches, convergence, errors, or where they are not known `how_to_know_errors`, where the light goes,
-/// seconds, and a line for each group of sensors. The long form adds decisions, counts, speed and the meshes on the way
-/// to an accuracy.
-std::string summary(const Report& report, bool long_form, const std::string& how_to_know_errors);
+/// The results that the user asked for: a line for each group of sensors and the estimated errors. Where errors are not
+/// known, `how_to_know_errors` names the way to compute them. The long form adds the meshes on the way to an accuracy.
+std::string summary_of_results(const Report& report, bool long_form, const std::string& how_to_know_errors);
+
+/// The facts of the run: model and patches, effects, convergence, flux and seconds. The long form adds decisions,
+/// counts and the speed of rays.
+std::string summary_of_run(const Report& report, bool long_form);
 
 /// "wrote a, b, c" as one line; without those that are empty.
 std::string files_line(const std::vector<std::filesystem::path>& files);
