@@ -175,7 +175,7 @@ class AccuracyTest(ToolTest):
         self.assertIn(f"form factors: sparse rows of {rays} rays per patch on average\n", done.stdout)
 
     def test_without_bars_it_is_said_what_is_not_known(self):
-        for words, how in ((("--no-error-bars",), "; --error-bars tells them"), (("--no-closure",), " with --no-closure")):
+        for words, how in ((("--no-error-bars",), "\nhint: --error-bars"), (("--no-closure",), " with --no-closure")):
             done = self.solve("-o", "a.ply", "--patches", "100", *words)
             self.assertIn(f"errors of mesh and form factors: not known{how}", done.stdout)
         for words in ((), ("--error-bars",)):
@@ -301,8 +301,8 @@ class AccuracyTest(ToolTest):
 
     def test_an_accuracy_out_of_memory_is_exit_code_4_with_what_can_be_had(self):
         done = self.solve("--accuracy", "0.05%", "--method", "pairs", "--memory", "80MB", "-o", "a.vtp", code=MEMORY)
-        found = re.search(r"--accuracy 0.05%: found that it takes about (\d+) patches and (\S+) GB, and 0.08 GB may be "
-                          r"taken; expected about (\S+)% or more", done.stderr)
+        found = re.search(r"--accuracy 0.05% needs about (\d+) patches and (\S+) GB, and 0.08 GB is "
+                          r"allowed\nhint: --accuracy (\S+)% or more", done.stderr)
         self.assertIsNotNone(found, done.stderr)
         self.assertGreater(int(found[1]), 600)
         self.assertGreater(float(found[2]), 0.08)

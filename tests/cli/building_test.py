@@ -89,7 +89,7 @@ class BuildingTest(ToolTest):
                 ("--ground", "2", ["0 to 1"]),
                 ("--weather", "city.epw@13-1-5", ["MONTH-DAY-HOUR"])):
             self.refused(USAGE, [option, *parts], "solve", "court.obj", option, value, "-o", "x.vtp")
-        self.refused(INPUT, ["--sky", "without a sun"], "plan", "court.obj", "--sky", "clear")
+        self.refused(INPUT, ["--sky", "hint: --sun "], "plan", "court.obj", "--sky", "clear")
         self.refused(INPUT, ["--exclude", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
                      "--exclude", "flor")
 

@@ -30,7 +30,7 @@ Scene with_stray_triangle(Scene scene, double metres) {
 bool names_what_is_far(const Scene& scene) {
   return std::any_of(scene.problems.begin(), scene.problems.end(), [](const Problem& problem) {
     return problem.kind == ProblemKind::implausible_size &&
-           problem.what.find("away from the rest") != std::string::npos;
+           problem.what.find("from the rest of the model") != std::string::npos;
   });
 }
 

@@ -74,17 +74,17 @@ TEST_F(Daylight, IsThatOfASceneFile) {
 TEST_F(Daylight, IsRefusedWhereItsPartsDoNotFit) {
   DaylightSetting no_sun;
   no_sun.sky = SkyKind::cie_clear;
-  EXPECT_NE(refusal_of(no_sun).find("without a sun"), std::string::npos);
+  EXPECT_NE(refusal_of(no_sun).find("position of the sun"), std::string::npos);
   DaylightSetting weak;
   weak.sun = DaylightSetting::SunPlace{};
-  EXPECT_NE(refusal_of(weak).find("no strength"), std::string::npos);
+  EXPECT_NE(refusal_of(weak).find("illuminance missing"), std::string::npos);
   DaylightSetting ground;
   ground.ground_reflectance = 0.1;
-  EXPECT_NE(refusal_of(ground).find("without a sky"), std::string::npos);
+  EXPECT_NE(refusal_of(ground).find("needs a sky"), std::string::npos);
   DaylightSetting both;
   both.sky = SkyKind::uniform;
   both.weather = DaylightSetting::WeatherFile{"city.epw"};
-  EXPECT_NE(refusal_of(both).find("leave one of the two out"), std::string::npos);
+  EXPECT_NE(refusal_of(both).find("both sun and sky"), std::string::npos);
   DaylightSetting below;
   below.sky = SkyKind::cie_clear;
   below.sun = DaylightSetting::SunPlace{-5, 180};

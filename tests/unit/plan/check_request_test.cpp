@@ -112,7 +112,7 @@ TEST(CheckRequest, RefusesANumberOfRaysWhereRowsAreNotOfRays) {
                                          request.solver.solver = Solver::gmres;
                                        }}});
     EXPECT_EQ(said.empty(), storage == Storage::rays) << said;
-    EXPECT_TRUE(said.empty() || has(said, "needs assembly.storage=rays")) << said;
+    EXPECT_TRUE(said.empty() || has(said, "hint: assembly.storage=rays")) << said;
   }
 }
 

@@ -47,7 +47,7 @@ TEST(MakePlan, SaysThatTheSunIsBelowTheHorizon) {
   scene.sun->direction = Vector(0, std::sqrt(3) / 2, -0.5);
   const Plan plan = make_plan(scene, {});
   ASSERT_EQ(plan.notes.size(), 1U);
-  EXPECT_EQ(plan.notes[0], "the sun is 30 degrees below the horizon: it gives no light");
+  EXPECT_NE(plan.notes[0].find("30 degrees below the horizon"), std::string::npos) << plan.notes[0];
 }
 
 TEST(MakePlan, NamesALuminaireJustBehindTheCeilingThatItShinesThrough) {
