@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Runs the commands of pages and compares their output; checks links, and numbers quoted from benchmarks.
 
-usage: PATCHLIGHT_TOOL=build/src/patchlight scripts/check_docs.py PAGE|FOLDER...   runs the blocks of these pages
-       scripts/check_docs.py --links                                               checks links and quotes of all pages
+usage: export PATCHLIGHT_TOOL=build/src/patchlight; then
+       scripts/check_docs.py PAGE|FOLDER...             runs the blocks of these pages
+       scripts/check_docs.py --write PAGE|FOLDER...     puts the present output into these pages where it differs
+       scripts/check_docs.py --links                    checks links and quotes of all pages
 
 PATCHLIGHT_PYTHON is the interpreter that pages run as python3, Debian's if it is not set: the module needs that one.
 
@@ -15,6 +17,7 @@ exit code; without it a command that prints no error has to end with 0. ```sh bl
 A paragraph or table with `<!-- from: benchmarks/NAME.md#section -->` in it or right above it quotes this section: each
 of its numbers has to stand there, rounded or not.
 """
+import difflib
 import os
 import pathlib
 import re
@@ -140,15 +143,40 @@ def printed_lines(text, folder):
     return [line for line in text.replace(str(folder), "FOLDER").splitlines() if line.strip()]
 
 
+def likeness(shown, printed):
+    """How much two lines look alike, whatever numbers they have."""
+    a, b = (re.sub(NUMBER, "#", words(line)) for line in (shown, printed))
+    return difflib.SequenceMatcher(None, a, b, autojunk=False).ratio()
+
+
+def refreshed(shown, outputs):
+    """The lines of the outputs that look most like the lines shown, with `...` for the others."""
+    early = [line for line in outputs[1] if not re.match(r"patchlight: note|hint:", line)]
+    late = [line for line in outputs[1] if line not in early]
+    printed = early + outputs[0] + late
+    if not any(line.strip() == "..." for line in shown):
+        return printed
+    chosen = set()
+    for line in shown:
+        free = [k for k in range(len(printed)) if k not in chosen]
+        best = max(free, key=lambda k: likeness(line, printed[k]), default=None)
+        if line.strip() != "..." and best is not None and likeness(line, printed[best]) > 0.5:
+            chosen.add(best)
+    lines, last = [], -1
+    for k in sorted(chosen):
+        lines += (["..."] if k > last + 1 else []) + [printed[k]]
+        last = k
+    return lines + (["..."] if last + 1 < len(printed) else [])
+
+
 def run(command, asks_code, folder, environment, last_code):
-    """Runs a command; returns its exit code and its faults."""
+    """Runs a command; returns its exit code, its faults and its output as the page would show it."""
     done = subprocess.run(["bash", "-c", f"(exit {last_code}); {command.text}"], cwd=folder, env=environment, check=False,
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     shown = [line for line in command.shown if line.strip()]
     outputs = [printed_lines(done.stdout, folder), printed_lines(done.stderr, folder)]
     code = re.fullmatch(r"\[exit (\d+)\]", shown[-1].strip()) if shown else None
-    if code:
-        shown.pop()
+    code_shown = [shown.pop()] if code else []
     fails = asks_code or any(re.search(r"\berror\b|Error|NOT converged", line) for line in shown)
     wrong = []
     if code and done.returncode != int(code[1]):
@@ -161,12 +189,14 @@ def run(command, asks_code, folder, environment, last_code):
             wrong.append(f"does not print: {line}")
     if wrong:
         wrong += ["  | " + line for output in outputs for line in output[:60]]
-    return done.returncode, wrong
+    return done.returncode, wrong, refreshed(shown, outputs) + code_shown
 
 
-def check_page(page, tool):
-    """Runs the blocks of a page; returns the number of commands and of those that fail."""
+def check_page(page, tool, writes=False):
+    """Runs the blocks of a page; returns the number of commands and of those that fail. Replaces lines if it `writes`."""
     failed = count = 0
+    page_lines = page.read_text(encoding="utf-8").splitlines()
+    edits = []
     name = page.relative_to(ROOT) if page.is_relative_to(ROOT) else page
     with tempfile.TemporaryDirectory(prefix="patchlight-docs-") as scratch:
         folder = pathlib.Path(scratch) / "work"
@@ -196,11 +226,18 @@ def check_page(page, tool):
                 count += 1
                 asks_code = k + 1 < len(commands) and "$?" in commands[k + 1].text
                 start = time.monotonic()
-                code, wrong = run(command, asks_code, folder, environment, code)
+                code, wrong, now = run(command, asks_code, folder, environment, code)
                 print(f"{name}:{command.line}: {time.monotonic() - start:.1f} s: {command.text}", flush=True)
-                if wrong:
+                if wrong and writes and command.shown:
+                    edits.append((command, now))
+                elif wrong:
                     failed += 1
                     print(f"{name}:{command.line}: error: {command.text}\n  " + "\n  ".join(wrong), file=sys.stderr, flush=True)
+    for command, now in reversed(edits):
+        begin = page_lines.index(command.shown[0], command.line)
+        page_lines[begin:begin + len(command.shown)] = now
+    if edits:
+        page.write_text("\n".join(page_lines) + "\n", encoding="utf-8")
     return count, failed
 
 
@@ -349,11 +386,12 @@ def main():
         print(f"docs: {len(all_pages())} pages, {len(wrong)} links or quotes are wrong")
         return 1 if wrong else 0
     tool = pathlib.Path(os.environ["PATCHLIGHT_TOOL"]).resolve()
-    pages = [page for name in sys.argv[1:] for path in [pathlib.Path(name).resolve()]
+    writes = sys.argv[1:2] == ["--write"]
+    pages = [page for name in sys.argv[2 if writes else 1:] for path in [pathlib.Path(name).resolve()]
              for page in ([path] if path.is_file() else sorted(path.rglob("*.md")))]
     count = failed = 0
     for page in pages:
-        ran, wrong = check_page(page, tool)
+        ran, wrong = check_page(page, tool, writes)
         count, failed = count + ran, failed + wrong
     print(f"docs: {len(pages)} pages, {count} commands, {failed} failed")
     return 1 if failed or not pages else 0

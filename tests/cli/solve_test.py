@@ -75,7 +75,7 @@ class SolveTest(ToolTest):
 
     def test_former_names_still_work(self):
         done = self.solve("--patches", 100, "-o", "a.vtp", "--storage", "tiles", "--force", "occlusion", "--report", "a.json")
-        self.assertEqual(done.stderr.count("patchlight: note: "), 3, done.stderr)
+        self.assertEqual(done.stderr.count(" is now --"), 3, done.stderr)
         self.assertIn("note: --force is now --enable", done.stderr)
         self.assertEqual(json.loads((self.folder / "a.json").read_text())["request"]["force"], ["occlusion"])
         self.assertEqual(self.solve("--patches", 100, "-q", "-o", "a.vtp", "--keep-mesh").stderr, "")
