@@ -90,8 +90,8 @@ class HostileTest(ToolTest):
             self.refused(INPUT, ["deep.toml:3"], "check", "deep.toml")
         self.write("dots.toml", SCENE + "# " + 200 * "." + "\nup = \"z\"  # it's " + 200 * "[" + "\n")
         self.good("check", "dots.toml")
-        self.write("long.toml", SCENE + "a = [" + 300_000 * "1," + "]\n" + "b = [" + 300_000 * "1," + "]\n")
-        self.refused(INPUT, ["long.toml:4", "500000"], "check", "long.toml")
+        self.write("long.toml", SCENE + "a = [" + 600_000 * "1," + "]\n" + "b = [" + 600_000 * "1," + "]\n")
+        self.refused(INPUT, ["long.toml:4", "1000000"], "check", "long.toml")
         self.write("key.toml", SCENE + 100_000 * "k" + " = [" + 10_000 * "[]," + "]\n")
         self.refused(INPUT, ["key.toml:3"], "check", "key.toml")
 

@@ -1,6 +1,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/shortest.h"
+#include "input/reading_limits.h"
 #include "input/toml/toml_value.h"
 
 #include <algorithm>
@@ -10,15 +11,6 @@
 
 namespace patchlight {
 namespace {
-
-// So deep may tables and lists lie in one another: a scene file needs four. The parser calls itself for each level.
-constexpr std::size_t most_levels = 64;
-
-// A value takes some 700 bytes here: longer lists belong into files of points.
-constexpr std::size_t most_values = 500'000;
-
-// Its name is kept with every value of a list.
-constexpr std::size_t longest_key = 200;
 
 // What follows the string or comment that the text begins with; the whole text when it begins with neither.
 std::string_view after_string(std::string_view text) {
@@ -71,13 +63,14 @@ void require_few_levels(std::string_view text, const std::string& file) {
     values += text[0] == ',' || text[0] == '=' || text[0] == '[' || text[0] == '{' ? 1 : 0;
     line += text[0] == '\n' ? 1 : 0;
     const std::string where = file + ":";
-    if (levels.now() > most_levels) {
-      throw InputError(where + std::to_string(line), "found tables or lists more than " + std::to_string(most_levels) +
+    if (levels.now() > reading_limits::nesting) {
+      throw InputError(where + std::to_string(line), "found tables or lists more than " +
+                                                         std::to_string(reading_limits::nesting) +
                                                          " deep; expected the keys of a scene file");
     }
-    if (values > most_values) {
+    if (values > reading_limits::values) {
       throw InputError(where + std::to_string(line),
-                       "found more than " + std::to_string(most_values) +
+                       "found more than " + std::to_string(reading_limits::values) +
                            " values\nhint: put points into a file of their own: file = \"...\"");
     }
     text.remove_prefix(1);
@@ -146,7 +139,7 @@ TomlValue value_of(const toml::node& node, const std::string& file, const std::s
   if (const auto* const table = node.as_table()) {
     for (const auto& [key, item] : *table) {
       const std::string word(key.str());
-      if (word.size() > longest_key) {
+      if (word.size() > reading_limits::key_length) {
         throw InputError(place(file, key.source()),
                          "found a key of " + std::to_string(word.size()) + " letters; expected a key of a scene file");
       }
