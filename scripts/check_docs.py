@@ -234,8 +234,9 @@ def check_page(page, tool, writes=False):
                     failed += 1
                     print(f"{name}:{command.line}: error: {command.text}\n  " + "\n  ".join(wrong), file=sys.stderr, flush=True)
     for command, now in reversed(edits):
-        begin = page_lines.index(command.shown[0], command.line)
-        page_lines[begin:begin + len(command.shown)] = now
+        begin = next(k for k in range(command.line, len(page_lines)) if page_lines[k].strip() == command.shown[0].strip())
+        indent = page_lines[begin][:len(page_lines[begin]) - len(page_lines[begin].lstrip())]
+        page_lines[begin:begin + len(command.shown)] = [indent + line for line in now]
     if edits:
         page.write_text("\n".join(page_lines) + "\n", encoding="utf-8")
     return count, failed

@@ -72,7 +72,7 @@ class FormFactorsTest(ToolTest):
         done = self.find("-o", "F.npy", "--method", "rays", code=USAGE)
         self.assertIn("--method pairs", done.stderr)
         done = self.find("-o", "room.ff", "--method", "on-demand", code=USAGE)
-        self.assertIn("pairs or rays", done.stderr)
+        self.assertIn("pairs, rays", done.stderr)
         done = self.find("-o", "room.ff", "--method", "rays", "--no-closure", code=USAGE)
         self.assertIn("--no-closure", done.stderr)
 

@@ -40,8 +40,8 @@ class RefusalTest(ToolTest):
         self.assertNotIn("mean", self.run_tool("check", "rom.obj", "--confine", "elsewhere").stderr)
 
     def test_camera(self):
-        for words, named in ((("1,2", "0,0,1", "60"), "such as 4,-3,1.6"), (("1,2,3",), "as in --camera 4,-3,1.6 0,0,1 60"),
-                             (("1,2,3", "0,0,1", "up"), "as in --camera 4,-3,1.6 0,0,1 60")):
+        for words, named in ((("1,2", "0,0,1", "60"), "such as 4,-3,1.6"), (("1,2,3",), "hint: --camera 4,-3,1.6 0,0,1 60"),
+                             (("1,2,3", "0,0,1", "up"), "hint: --camera 4,-3,1.6 0,0,1 60")):
             self.assert_refused(USAGE, ["--camera", named], "solve", "room.obj", "--picture", "room.png", "--camera", *words)
 
     def test_coordinate_that_is_not_a_number(self):

@@ -153,7 +153,7 @@ TEST_F(Rooms, HaveNoLampWhereNoPlaceIsFound) {
   for (const std::vector<Point>& face : {std::vector{a, c, b}, {a, b, top}, {a, top, c}, {b, c, top}})
     spire = test::with_polygon(std::move(spire), face);
   const std::string text = new_text(spire);
-  for (const std::string line : {"# for which no place was found.\n# [[luminaire]]\n",
+  for (const std::string line : {"# no place for it was found.\n# [[luminaire]]\n",
                                  "\n# name = \"lamp\"\n# kind = ", "\n# positions = [[X, Y, Z]]\n# lumens = 3000\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }

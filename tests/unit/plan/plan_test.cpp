@@ -29,7 +29,7 @@ TEST(MakePlan, RefusesASceneWithoutLamp) {
     make_plan(cube_room(0.5, 0), {});
     FAIL() << "expected an InputError";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no lamp"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("no light source"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("grey"), std::string::npos);
   }
 }
