@@ -10,6 +10,13 @@ bool CoveredPlaces::covers(PolygonIndex polygon, Side side, const Point& place) 
   return std::any_of(over.begin(), over.end(), [&](PolygonIndex other) { return contains(polygons[other], place); });
 }
 
+bool CoveredPlaces::lie_in_one_plane(PolygonIndex a, PolygonIndex b) const {
+  if (a == no_polygon || b == no_polygon) return false;
+  for (const Side side : {Side::front, Side::back})
+    if (coverings.lies_over(a, b, side) || coverings.lies_over(b, a, side)) return true;
+  return false;
+}
+
 bool CoveredPlaces::covers_end(const Point& from, const Point& to, PolygonIndex from_polygon,
                                PolygonIndex to_polygon) const {
   const auto covers_start = [&](const Point& start, const Point& end, PolygonIndex polygon) {

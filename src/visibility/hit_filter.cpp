@@ -12,6 +12,14 @@ namespace {
 // in_plane_tolerance for rays whose ends are given in double.
 constexpr double on_plane_tolerance = 1e-9;
 
+// Between faces that lie one over the other the order is known, and rounding does not decide on it: a ray that starts
+// on one of them is not blocked by the other, which may lie before it by in_plane_tolerance.
+double tolerance_for(const TrianglePlane& plane, const ExactRay& ray, const CoveredPlaces* places) {
+  const bool is_together = places != nullptr && (places->lie_in_one_plane(plane.polygon, ray.from_polygon) ||
+                                                 places->lie_in_one_plane(plane.polygon, ray.to_polygon));
+  return is_together ? in_plane_tolerance : on_plane_tolerance;
+}
+
 // A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
 // ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
 bool separates(const TrianglePlane& plane, const ExactRay& ray, double tolerance) {
@@ -101,8 +109,10 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
     const PolygonIndex polygon = triangles.polygons[triangle];
     bool blocks = polygon != from && polygon != to;
     if (blocks && clear[k] == 0) {
-      blocks = packet != nullptr ? separates(triangles.planes[triangle], exact_ray(*packet, ray), in_plane_tolerance)
-                                 : separates(triangles.planes[triangle], context->rays[ray], on_plane_tolerance);
+      blocks = packet != nullptr
+                   ? separates(triangles.planes[triangle], exact_ray(*packet, ray), in_plane_tolerance)
+                   : separates(triangles.planes[triangle], context->rays[ray],
+                               tolerance_for(triangles.planes[triangle], context->rays[ray], context->covered_places));
     }
     if (!blocks || (context->covered_places != nullptr &&
                     is_covered(triangles.planes[triangle], context->rays[ray], *context->covered_places)))

@@ -36,7 +36,7 @@ class PlanTest(ToolTest):
         for effect in EFFECTS:
             self.assertIn(f"\n{effect}", done.stdout)
         self.assertRegex(done.stdout, r"expected: \d+ patches, [\d.]+ GB, about [\d.]+ s on \d+ thread")
-        self.assertRegex(done.stdout, r"\non top of that: .*pictures and pages, where they are asked for\n$")
+        self.assertRegex(done.stdout, r"\nin addition: .*images and pages\n$")
         self.assertEqual(content(self.folder), before, "nothing is written, nothing is solved")
 
     def test_with_an_accuracy_it_tells_the_first_mesh(self):

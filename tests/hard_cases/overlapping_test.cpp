@@ -4,6 +4,7 @@
 
 #include "mesh/mesher.h"
 #include "pipeline/ray_form_factors.h"
+#include "scene/coverings.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
 #include "visibility/occluder.h"
@@ -38,6 +39,26 @@ double mean_of_walls(const Scene& scene) {
     }
   }
   return flux / area;
+}
+
+// Law: the order of faces in one plane is known, and rounding does not change it. From the rug every direction upward is
+// free, whether its corners are stored below the floor or above it.
+TEST(Overlapping, RoundingDoesNotDecideWhichFaceIsAbove) {
+  const double extent = std::sqrt(4.0 * 4 + 3 * 3);
+  for (const double share : {-2e-7, -2e-8, -2e-9, 0.0, 2e-9, 2e-8, 2e-7}) {
+    const double z = share * extent;
+    Scene scene = with_quad(empty_scene({grey(0.5)}), rectangle(0, 0, 4, 3));
+    scene = with_quad(std::move(scene), {Point(1, 1, z), Point(2, 1, z), Point(2, 2, z), Point(1, 2, z)});
+    const KeptSides kept = kept_sides(scene, Sides::front);
+    const Occluder occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept));
+    ASSERT_TRUE(occluder.lies_over(1, 0, Side::front)) << share;
+    for (const Vector& way : {Vector(0, 0, 1), Vector(0.9, 0.1, 0.4), Vector(-0.7, 0.7, 0.1)}) {
+      const Ray ray{Point(1.5, 1.5, z), way.normalized(), 1};
+      EXPECT_FALSE(occluder.first_hits({&ray, 1}).front().has_value()) << share;
+      const Segment segment{ray.origin, ray.origin + 2 * ray.direction, 1};
+      EXPECT_EQ(occluder.transmittance({&segment, 1}).front(), 1.0F) << share;
+    }
+  }
 }
 
 // Law: a black rug drawn on a floor of reflectance 0.7 is the same as one that the floor is cut out for. The rug's
