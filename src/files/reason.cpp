@@ -12,7 +12,8 @@ constexpr const char* too_large = "a size in it needs more memory than there is"
 
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
-// "[json.exception.out_of_range.403] key 'rooms' not found" names the key; other faults have no words but the library's.
+// "[json.exception.out_of_range.403] key 'rooms' not found" names the key; other faults have no words but the
+// library's.
 std::string reason_of_json(const std::string& text) {
   const std::size_t begin = text.find("key '");
   const std::size_t end = begin == std::string::npos ? begin : text.find('\'', begin + 5);
@@ -39,7 +40,8 @@ std::string reason_of(const std::string& library_text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   if (text.starts_with("[json.exception")) return reason_of_json(text);
   if (contains(text, "bad_alloc") || contains(text, "length_error")) return too_large;
-  if (contains(text, "::_M_") || contains(text, "__n (which") || contains(text, "out_of_range")) return "a number in it refers to nothing";
+  if (contains(text, "::_M_") || contains(text, "__n (which") || contains(text, "out_of_range"))
+    return "a number in it refers to nothing";
   return text;
 }
 

@@ -6,8 +6,8 @@
 namespace patchlight {
 
 /// The reason that a library gives for refusing a file, in one line for the user of the file. Texts that only name the
-/// library's own types and functions ("std::bad_alloc", "vector::_M_range_check", "[json.exception.type_error.302]") are
-/// replaced by the fault of the file that causes them.
+/// library's own types and functions ("std::bad_alloc", "vector::_M_range_check", "[json.exception.type_error.302]")
+/// are replaced by the fault of the file that causes them.
 std::string reason_of(const std::exception& error);
 
 /// The same for a text that a library returns instead of throwing.

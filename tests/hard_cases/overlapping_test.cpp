@@ -41,8 +41,8 @@ double mean_of_walls(const Scene& scene) {
   return flux / area;
 }
 
-// Law: the order of faces in one plane is known, and rounding does not change it. From the rug every direction upward is
-// free, whether its corners are stored below the floor or above it.
+// Law: the order of faces in one plane is known, and rounding does not change it. From the rug every direction upward
+// is free, whether its corners are stored below the floor or above it.
 TEST(Overlapping, RoundingDoesNotDecideWhichFaceIsAbove) {
   const double extent = std::sqrt(4.0 * 4 + 3 * 3);
   for (const double share : {-2e-7, -2e-8, -2e-9, 0.0, 2e-9, 2e-8, 2e-7}) {

@@ -25,18 +25,17 @@ std::string reason(const std::function<void()>& fail) {
 // Exceptions of the standard library and of JSON, each as the libraries throw it.
 const std::vector<std::function<void()>>& failures() {
   static const json list = json::parse("[1]");
-  static const std::vector<std::function<void()>> all = {
-      [] { throw std::bad_alloc(); },
-      [] { std::vector<int>().reserve(std::size_t(-1)); },
-      [] { static_cast<void>(std::vector<int>().at(1)); },
-      [] { static_cast<void>(std::string().at(1)); },
-      [] { static_cast<void>(list.at("rooms")); },
-      [] { static_cast<void>(list.at(7)); },
-      [] { static_cast<void>(list.get<std::string>()); },
-      [] { static_cast<void>(json::object().at("rooms")); },
-      [] { parse("{"); },
-      [] { parse("\"\xff\""); },
-      [] { parse("1e999999"); }};
+  static const std::vector<std::function<void()>> all = {[] { throw std::bad_alloc(); },
+                                                         [] { std::vector<int>().reserve(std::size_t(-1)); },
+                                                         [] { static_cast<void>(std::vector<int>().at(1)); },
+                                                         [] { static_cast<void>(std::string().at(1)); },
+                                                         [] { static_cast<void>(list.at("rooms")); },
+                                                         [] { static_cast<void>(list.at(7)); },
+                                                         [] { static_cast<void>(list.get<std::string>()); },
+                                                         [] { static_cast<void>(json::object().at("rooms")); },
+                                                         [] { parse("{"); },
+                                                         [] { parse("\"\xff\""); },
+                                                         [] { parse("1e999999"); }};
   return all;
 }
 
