@@ -109,7 +109,7 @@ class AccuracyTest(ToolTest):
         done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json")
         self.assertEqual(done.returncode, GOOD, done.stderr)
         self.assertRegex(done.stdout, r"(?m)^estimated error \(indoors\): \S+ %")
-        self.assertRegex(done.stdout, r"\n  outside, \d+ patches, of the light that is reflected there: \S+ %")
+        self.assertRegex(done.stdout, r"\n  outside, \d+ patches, relative to the light reflected there: \S+ %")
         spaces = json.loads((self.folder / "report.json").read_text())["relative_error_by_space"]
         done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json",
                              "--focus", "room.inside")

@@ -41,7 +41,7 @@ class RefusalTest(ToolTest):
 
     def test_camera(self):
         for words, named in ((("1,2", "0,0,1", "60"), "such as 4,-3,1.6"), (("1,2,3",), "hint: --camera 4,-3,1.6 0,0,1 60"),
-                             (("1,2,3", "0,0,1", "up"), "hint: --camera 4,-3,1.6 0,0,1 60")):
+                             (("1,2,3", "0,0,1", "up"), "e.g. --camera 4,-3,1.6 0,0,1 60")):
             self.assert_refused(USAGE, ["--camera", named], "solve", "room.obj", "--picture", "room.png", "--camera", *words)
 
     def test_coordinate_that_is_not_a_number(self):
