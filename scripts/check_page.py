@@ -71,7 +71,7 @@ setTimeout(() => {
 WHITE = """<style>:root { --stage: #fff !important; }</style>
 <script>window.requestAnimationFrame = (draw) => setTimeout(draw, 0);</script></head>"""
 
-# Counts pixels of views of the model: those darker than any surface of it, and those as bright as what is behind it.
+# Counts pixels of views of the model: those darker than any surface of it, and those as bright as the background.
 PIXELS = """<script>
 const counts = {};
 const later = () => new Promise((done) => setTimeout(done, 500));
@@ -291,7 +291,7 @@ field_of_view = 80
 
 
 def faults_of_seams(browser, page):
-    """A furnace has one colour: no pixel of it is dark, and from inside none shows what is behind it."""
+    """A furnace has one colour: no pixel of it is dark, and from inside none shows the background."""
     counts, messages = facts_of(browser, page, PIXELS, WHITE)
     yield from (f"on the console: {message}" for message in messages)
     if counts is None:
@@ -302,7 +302,7 @@ def faults_of_seams(browser, page):
         if count["black"] or count["white"] == count["all"]:
             yield f"{view}: {count['black']} pixels are dark, {count['white']} of {count['all']} show no face"
     if counts["inside"]["white"]:
-        yield f"inside: {counts['inside']['white']} pixels show what is behind a closed room"
+        yield f"inside: {counts['inside']['white']} pixels show the background of a closed room"
 
 
 def solve(tool, folder, name, *words):

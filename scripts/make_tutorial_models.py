@@ -236,7 +236,7 @@ def main():
     texts |= {"panel.ies": panel_ies(), "flat.ifc": flat()}
     differ = [name for name, text in texts.items() if not (MESHES / name).exists() or (MESHES / name).read_text() != text]
     for name in differ if check else texts:
-        print("differs from what this script writes:" if check else "wrote", name)
+        print("differs from the output of this script:" if check else "wrote", name)
         if not check:
             (MESHES / name).write_text(texts[name])
     return 1 if check and differ else 0

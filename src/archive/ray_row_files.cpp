@@ -36,7 +36,7 @@ namespace {
 // The files of rays that are specular on their way, in a folder of rows of rays.
 // docs/reference/outputs/form-factor-folder.md describes them.
 
-// What stops may name.
+// The surfaces that stops may name.
 struct NumbersOf {
   std::size_t patches = 0;
   std::size_t polygons = 0;
@@ -170,7 +170,7 @@ std::vector<std::array<double, 2>> read_kinds(const std::filesystem::path& file)
   return kinds;
 }
 
-// What each of these files has, by its name.
+// The contents of each file, by its name.
 std::map<std::string, std::string> meaning_of_stop_files() {
   const std::array<const char*, 5> meaning = {
       "where the stops of each row begin; one more at the end",

@@ -36,7 +36,7 @@ nlohmann::ordered_json json_of_bands(const Bands& bands) {
   return list;
 }
 
-// The same back. Throws what nlohmann::json throws where a part is missing or of another shape.
+// Reads the bands back. Throws the exceptions of nlohmann::json if a part is missing or has another shape.
 Bands bands_from(const nlohmann::ordered_json& json) {
   Bands bands;
   for (const auto& entry : json) {

@@ -7,7 +7,7 @@
 
 namespace patchlight::cli {
 
-/// Checks the options of a command after they were parsed, and returns what the command is asked to do. \throws
+/// Checks the options of a command after they were parsed, and returns the request. \throws
 /// UsageError, InputError.
 using Finish = std::function<Arguments()>;
 

@@ -6,7 +6,7 @@
 
 #include <span>
 
-// What each command does. All may throw InputError, OutputError, MemoryError and Cancelled.
+// The commands. All may throw InputError, OutputError, MemoryError and Cancelled.
 namespace patchlight::cli {
 
 /// Reports the contents of a model and its problems. Returns input_error when the model cannot be solved.
@@ -22,7 +22,7 @@ ExitCode solve(const SolveArguments& arguments);
 /// Renders images of a saved solution.
 ExitCode render(const RenderArguments& arguments);
 
-/// Prints what a run would simulate, why, and what it would cost, without running it.
+/// A dry run: prints the effects that would be simulated, the reasons, and the expected cost.
 ExitCode plan(const PlanArguments& arguments);
 
 /// Solves, traces paths, and prints where they differ most. Returns validation_failed when they disagree.
@@ -34,7 +34,7 @@ ExitCode form_factors(const FormFactorArguments& arguments);
 /// Solves a model with every solver.
 ExitCode compare_solvers(const ComparisonArguments& arguments);
 
-/// Measures what accuracy costs.
+/// Measures the cost of accuracy.
 ExitCode convergence(const ConvergenceArguments& arguments);
 
 /// Prints a table of cases with known answers. Returns validation_failed when one of them lies outside its error bar.

@@ -281,7 +281,7 @@ constexpr CommandText commands[] = {
      "# every problem, and the faces for ParaView\npatchlight check house.ifc --all --problems problems.vtp\n"
      "# an image of the model without light\npatchlight check house.ifc --picture house.png\n"},
     {"init", start, "Create a commented scene file for a model", "MODEL... -o SCENE.toml [OPTIONS]",
-     "Writes a scene file (TOML) that adds to a model what it lacks: a sky (or a lamp, if the model has no windows), "
+     "Writes a scene file (TOML) for a model and adds missing parts: a sky (or a lamp, if the model has no windows), "
      "the "
      "glazing, and a sensor grid and a camera in each room. Edit the file, then solve it.",
      "# a scene with daylight and sensors\npatchlight init house.ifc -o house.toml\n"
@@ -301,7 +301,7 @@ constexpr CommandText commands[] = {
      "# a view of the scene file, larger\npatchlight render office.toml --solution office.vtp --view desk --size "
      "1600x900 -o desk.png\n"
      "# how two solutions differ\npatchlight render room.obj --solution a.vtp --difference b.vtp -o difference.png\n"},
-    {"plan", understand, "Show what a run would simulate, and its cost", "MODEL... [OPTIONS]",
+    {"plan", understand, "Dry run: list the simulated effects and the expected cost", "MODEL... [OPTIONS]",
      "A dry run. Lists the effects that a run will simulate and why, and estimates patches, memory and time. It takes "
      "the options of patchlight solve that change these.",
      "# decisions and costs\npatchlight plan room.obj\n"
@@ -330,7 +330,7 @@ constexpr CommandText commands[] = {
      "# all solvers\npatchlight compare-solvers room.obj -o compared\n"
      "# three of them\npatchlight compare-solvers room.obj --solvers cg,jacobi,gmres -o compared\n"
      "# a page for the browser\npatchlight compare-solvers room.obj -o compared --html compared.html\n"},
-    {"convergence", research, "Measure what accuracy costs for a model", "MODEL... -o FOLDER [OPTIONS]",
+    {"convergence", research, "Measure the cost of accuracy for a model", "MODEL... -o FOLDER [OPTIONS]",
      "Solves a model with several patch sizes, accuracies and estimators, and writes the error and time of each run.",
      "# errors and times\npatchlight convergence room.obj -o study\n"
      "# up to 16,000 patches\npatchlight convergence room.obj --patches 16000 -o study\n"

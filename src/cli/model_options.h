@@ -27,11 +27,11 @@ struct ModelOptions {
   std::string confine;
 };
 
-/// Adds the arguments that name the files and their units. What is parsed lands in `options`, which must outlive the
+/// Adds the arguments that name the files and their units. The values land in `options`, which must outlive the
 /// command; so below.
 void add_file_options(CLI::App& command, ModelOptions& options);
 
-/// The same, and what changes the model: materials, choice of faces, daylight.
+/// The same, and the options that change the model: materials, choice of faces, daylight.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
 /// Adds --set alone.

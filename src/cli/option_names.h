@@ -14,7 +14,7 @@ struct OptionName {
 };
 
 /// A message of the library with the options in place of its fields: "--disable sun" for "effects.skip=sun". `other`
-/// goes before what options are called with most commands.
+/// takes precedence over the names that most commands have.
 std::string with_option_names(const std::string& text, std::span<const OptionName> other = {});
 
 /// check() for a command that calls some options otherwise. \throws UsageError.

@@ -86,7 +86,7 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
 }
 
-// "room.png" of the view "desk": "room.desk.png", with what file names do not like as "_".
+// "room.png" of the view "desk": "room.desk.png", with "_" for characters that file names do not allow.
 std::filesystem::path with_view(const std::filesystem::path& file, const std::string& view) {
   if (file.empty()) return file;
   std::string name = view;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// The options that name results. What is parsed lands in a structure, which must outlive the command.
+// The options that name results. The values land in a structure, which must outlive the command.
 namespace patchlight::cli {
 
 /// The smallest and the largest value of --picture-samples.
@@ -54,10 +54,10 @@ struct LightmapGiven {
   std::optional<double> texel;  ///< metres
 };
 
-/// Adds --lightmap and --texel. What is parsed lands in `given`, which must outlive the command.
+/// Adds --lightmap and --texel. The values land in `given`, which must outlive the command.
 void add_lightmap_options(CLI::App& command, LightmapGiven& given);
 
-/// What they ask for. \throws UsageError for texels of no lightmap.
+/// The lightmap that they request. \throws UsageError for texels of no lightmap.
 LightmapSettings lightmap_settings(const LightmapGiven& given);
 
 /// \throws UsageError when an output lies in the folder of the lightmap, which is replaced as a whole.
@@ -75,7 +75,7 @@ void add_page_option(CLI::App& command, std::string& page);
 /// \throws UsageError when the page would lie in the folder that the command replaces as a whole.
 void require_page_elsewhere(const std::filesystem::path& page, const std::filesystem::path& folder);
 
-/// The options that say how the equations are solved and what is written, while they are being parsed.
+/// The options of the solver and the outputs, while they are being parsed.
 struct SolutionOptions {
   bool solver_given = false;
   std::vector<std::string> results;
@@ -104,7 +104,7 @@ void add_verbosity_options(CLI::App& command, SolutionOptions& options);
 /// is the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
 SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options);
 
-/// What would be written, with the options that ask for it.
+/// The files that would be written, each with its option.
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments);
 
 /// The files of the command line that are read.

@@ -25,7 +25,7 @@ namespace {
 // So many sides that --sides auto leaves out are checked.
 constexpr std::size_t left_out_checked = 16;
 
-// What these commands have in common.
+// Options that these commands share.
 struct ResearchOptions {
   ModelOptions model;
   RequestGiven request;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// The options that say how a model is solved. What is parsed lands in a request, which must outlive the command.
+// The options that say how a model is solved. The values land in a request, which must outlive the command.
 namespace patchlight::cli {
 
 /// A request while it is being parsed: lengths are in model units, unless they have a unit of their own.

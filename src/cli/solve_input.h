@@ -24,7 +24,7 @@ SolveInput read_input(const SolveArguments& arguments);
 /// Adds the points of --points to the sensors of the scene. \throws InputError.
 Scene with_points(Scene scene, const SolveArguments& arguments);
 
-/// Where readings are written: what the arguments name, else their default where the scene has sensors. \throws
+/// The file of the readings: the one that the arguments name, else their default where the scene has sensors. \throws
 /// InputError when an output is named but nothing is to be read.
 std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene);
 

@@ -45,8 +45,8 @@ double known_error(const AccuracyStep& step);
 /// "4.2 % (mesh 3.1, ...); variation within patches: 12 %".
 std::string errors_in_words(const AccuracyStep& step);
 
-/// What a mesh gave, told as soon as it is solved: "12345 patches, 4.2 % (mesh 3.1, form factors 2.8, solver 0.01), 23
-/// s", the seconds since the first one was begun.
+/// The line that is printed as soon as a mesh is solved: "12345 patches, 4.2 % (mesh 3.1, form factors 2.8, solver
+/// 0.01), 23 s", the seconds since the first one was begun.
 std::string step_in_words(const AccuracyStep& step);
 
 }  // namespace patchlight::cli

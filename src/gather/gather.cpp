@@ -27,7 +27,7 @@ namespace {
 struct Slopes {
   Field gradient;  // along the surface, W/m^2 per metre: three components of the first band, then those of the next
   Field residual;  // an allowance for how far the radiosity at a point is from the plane where it is curved, W/m^2
-  Field unknown;   // how far from it is what the plane does not explain at all, root mean square, W/m^2
+  Field unknown;   // root mean square of the part that the plane does not explain, W/m^2
 };
 
 // Keeps the fit soluble where all neighbours lie in one direction, as a share of the squared distances.
@@ -178,9 +178,9 @@ bool has_few_patches(const PatchMesh& mesh, PatchIndex j) {
 // that would fall below 0 at a corner of its patch is made less steep.
 //
 // The residual is half of that at the centroids of the patches around, or of all of the difference where these are
-// too few for a residual. Unknown is what the plane does not explain of `errors.display`, or, where that is not known
-// and a polygon side has no more than four patches, all that these reflect: nothing tells how that varies. O(patches)
-// with a bounded number around each vertex. Throws Cancelled.
+// too few for a residual. Unknown is the part of `errors.display` that the plane does not explain, or, where that is
+// not known and a polygon side has no more than four patches, all that these reflect: nothing tells how that varies.
+// O(patches) with a bounded number around each vertex. Throws Cancelled.
 Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder,
                  const RadiosityErrors& errors, const Observer& observer) {
   const Planes planes(mesh, values, occluder);

@@ -45,7 +45,7 @@ std::vector<Vector> directions() {
 
 using Hits = std::vector<Hit>;
 
-// What is met in all directions; nothing when a ray leaves the scene.
+// The hits in all directions; nothing if a ray leaves the scene.
 Hits hits_around(const Point& point, const Occluder& occluder) {
   static const std::vector<Vector> around = directions();
   std::vector<Ray> all;

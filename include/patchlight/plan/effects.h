@@ -6,7 +6,7 @@
 
 namespace patchlight {
 
-/// What can be simulated or left out. docs/concepts/effects.md has a row on each.
+/// Effects that can be simulated or left out. docs/concepts/effects.md has a row on each.
 enum class Effect : std::uint8_t {
   occlusion,        ///< polygons that stand between two patches
   interreflection,  ///< light that is reflected more than once before it is seen

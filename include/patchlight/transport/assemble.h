@@ -41,7 +41,7 @@ const char* name_of(Storage storage);
 /// True when the entries of all pairs are kept, so that they can be closed, summed up and written.
 constexpr bool keeps_entries(Storage storage) { return storage == Storage::tiles || storage == Storage::automatic; }
 
-/// Short cuts of the automatic estimator, each of which can be left out to see what it saves and errs;
+/// Short cuts of the automatic estimator, each of which can be left out to measure its saving and its error;
 /// docs/theory/occluded-form-factors.md.
 struct ShortCuts {
   bool hidden = true;  ///< clusters that one polygon hides from each other take no rays
