@@ -26,7 +26,8 @@
 namespace patchlight {
 namespace {
 
-Simulation finished(Simulation simulation, const Scene& scene, const StageClock& clock) {
+Simulation finished(Simulation simulation, const StageClock& clock) {
+  const Scene& scene = simulation.world->planned_scene();
   simulation.spaces = errors_by_space(scene, simulation);
   simulation.costs = clock.costs();
   return of_whole_patches(std::move(simulation), scene);
@@ -60,6 +61,12 @@ SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, Stag
 }  // namespace
 
 Simulation simulate(const Scene& scene, const Request& request, const Observer& observer, const Steps& with) {
+  return simulate(std::make_shared<const Scene>(scene), request, observer, with);
+}
+
+Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, const Observer& observer,
+                    const Steps& with) {
+  const Scene& scene = *read;
   const ThreadLimit threads(request.resources.threads);
   StageClock clock;
 
@@ -71,14 +78,12 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   //    how form factors and radiosities are found.
   const Plan plan = make_plan(scene, request, given);
   require_memory(scene, request, plan);
-  const Scene lit = scene_as_planned(scene, plan);
   clock.finish(Stage::plan);
 
-  // 3. What rays need: which polygons lie on others, and what stands between patches.
-  const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan),
-                                                       reflections_of(plan));
-  const std::vector<std::string> notes = notes_on_run(scene, *tracing, plan);
-  const Run run{lit, request, plan, notes, tracing, with, observer};
+  // 3. Share what rays and sources of light need with all later steps, and with the views of the solution.
+  const auto world = std::make_shared<const World>(std::move(read), plan);
+  const std::vector<std::string> notes = notes_on_run(*world, plan);
+  const Run run{world->planned_scene(), request, plan, notes, world, with, observer};
   const std::vector<LightColour> colours = light_colours(run);
 
   Search search(run);
@@ -96,11 +101,11 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
       // 9. Refine where that pays, or end.
       result = search.noted(std::move(result));
       next = search.next(result);
-      if (!next) return finished(std::move(result.simulation), lit, clock);
+      if (!next) return finished(std::move(result.simulation), clock);
     }
   } catch (const Cancelled&) {
     if (!search.kept()) throw;
-    return finished(*search.kept(), lit, clock);
+    return finished(*search.kept(), clock);
   }
 }
 

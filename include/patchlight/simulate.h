@@ -58,10 +58,10 @@ struct SpaceErrors {
   AccuracyStep errors;  ///< with the number of patches; no seconds
 };
 
-class Tracing;
 struct RayExchange;
 struct RayOptions;
 struct RowBlocks;
+class World;
 
 /// A solved scene.
 struct Simulation {
@@ -83,14 +83,14 @@ struct Simulation {
   Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
                                   ///< the solver err, which are not known; else empty
-  std::vector<Field> correlated_errors = {};    ///< equally likely draws of the sampling error of the irradiance that
-                                                ///< patches have in common, W/m^2: their mean square is part of the
-                                                ///< square of the sampling error. Sums over many patches need them, as
-                                                ///< in a room the level of the light is common to all. Empty where none
-                                                ///< are known
-  bool unfinished = false;                      ///< stopped by the observer, with Steps::keeps_unfinished
-  std::shared_ptr<const Tracing> tracing = {};  ///< what rays of its scene need, for views of
-                                                ///< the solution; never null after simulate()
+  std::vector<Field> correlated_errors = {};  ///< equally likely draws of the sampling error of the irradiance that
+                                              ///< patches have in common, W/m^2: their mean square is part of the
+                                              ///< square of the sampling error. Sums over many patches need them, as
+                                              ///< in a room the level of the light is common to all. Empty where none
+                                              ///< are known
+  bool unfinished = false;                    ///< stopped by the observer, with Steps::keeps_unfinished
+  std::shared_ptr<const World> world = {};    ///< the scene with its rays and lights, which views share; never
+                                              ///< null after simulate()
 };
 
 /// The exchange between the patches of a mesh where it is known already.
@@ -130,6 +130,10 @@ struct Steps {
 /// From a scene to converged radiosities: the whole program.
 /// \throws InputError, MemoryError, Cancelled, and what the steps throw.
 Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {},
+                    const Steps& with = {});
+
+/// The same without a copy of the scene, which Simulation::world keeps.
+Simulation simulate(std::shared_ptr<const Scene> scene, const Request& request = {}, const Observer& observer = {},
                     const Steps& with = {});
 
 }  // namespace patchlight

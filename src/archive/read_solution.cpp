@@ -5,10 +5,10 @@
 #include "archive/scene_hash.h"
 #include "output/vtk/read_vtk.h"
 #include "pipeline/problem_of.h"
+#include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "scene/extent.h"
 #include "visibility/covered_places.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <limits>
@@ -130,7 +130,8 @@ KeptSides sides_of(const PatchMesh& mesh, const Scene& scene) {
 
 }  // namespace
 
-Simulation read_solution(const std::filesystem::path& file, const Scene& scene) {
+Simulation read_solution(const std::filesystem::path& file, std::shared_ptr<const Scene> read) {
+  const Scene& scene = *read;
   StoredSolution stored = read_vtk(file);
   if (stored.scene_hash != scene_hash(scene)) {
     throw InputError(file.string(),
@@ -148,16 +149,17 @@ Simulation read_solution(const std::filesystem::path& file, const Scene& scene) 
   plan.decisions = std::move(stored.decisions);
   plan.assembly.seed = stored.seed;
   if (stored.follows_reflections) plan.assembly.storage = Storage::rays;
+  plan.coverings = std::make_shared<const Coverings>(find_coverings(scene, plan.sides));
+  simulation.world = std::make_shared<const World>(std::move(read), plan);
   RadiosityProblem& problem = simulation.problem;
   problem.area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
   problem.exitance = std::move(stored.exitance);
   problem.scattering.reflectance = std::move(stored.reflectance);
   if (!mesh.sheets.empty())
-    problem.scattering = with_sheets(std::move(problem.scattering), scene_as_planned(scene, plan), mesh, problem.area);
+    problem.scattering =
+        with_sheets(std::move(problem.scattering), simulation.world->planned_scene(), mesh, problem.area);
   simulation.solution.radiosity = std::move(stored.radiosity);
   simulation.solution.converged = stored.converged;
-  simulation.tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan),
-                                                       reflections_of(plan));
   return simulation;
 }
 

@@ -70,9 +70,9 @@ std::string not_reached(const Comparison& comparison) {
 void write_page_of_comparison(const ComparisonArguments& arguments, const Scene& scene, const Comparison& comparison,
                               const Provenance& provenance, const Observer& observer) {
   const Simulation& simulation = comparison.simulation;
-  const SolvedSurface surface = surface_of(scene, simulation);
+  const SolvedSurface surface = surface_of(simulation);
   const Report report = report_of(scene, arguments.request, simulation);
-  const Picture picture = take_picture(scene, simulation, {}, observer);
+  const Picture picture = take_picture(simulation, {}, observer);
   write_page(arguments.page, {.scene = scene,
                               .provenance = provenance,
                               .surface = &surface,
@@ -104,7 +104,7 @@ ExitCode compare_solvers(const ComparisonArguments& arguments) {
 
   // 2. Write tables, plots and series
   const WritingGuard guard;
-  const Provenance provenance{arguments.command_line, exposure_of(scene, simulation), scene_hash(scene)};
+  const Provenance provenance{arguments.command_line, exposure_of(simulation), scene_hash(scene)};
   write_comparison(arguments.output, scene, comparison, provenance, observer);
   if (!arguments.page.empty()) write_page_of_comparison(arguments, scene, comparison, provenance, observer);
   line.hide();

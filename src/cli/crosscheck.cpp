@@ -9,8 +9,8 @@
 #include "cli/text_table.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_verification.h"
+#include "pipeline/world.h"
 #include "plan/close_lamps.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,7 +193,7 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
 
 // Where light is spread too far the patches that were checked need not show it.
 std::string close_lamps(const Scene& scene, const Simulation& simulation, Verdict verdict) {
-  if (notes_on_close_lamps(scene, simulation.tracing->between_patches(), simulation.plan.max_edge).empty()) return {};
+  if (notes_on_close_lamps(scene, simulation.world->between_patches(), simulation.plan.max_edge).empty()) return {};
   const std::string near = "the lamps that are nearer to a surface than its patches are large";
   return verdict == Verdict::agrees ? ", on the patches that were checked: see the note on " + near
                                     : "; " + near + " may be why: see the note on them";

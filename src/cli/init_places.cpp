@@ -75,7 +75,7 @@ class Trial {
       facing.push_back({sensor.point, scene.up});
       down.push_back({sensor.point, -scene.up});
     }
-    const std::vector<SensorPlace> places = place_sensors(scene, sides_, faces_);
+    const std::vector<SensorPlace> places = place_sensors(scene, scene.sensors, sides_, faces_);
     const std::vector<std::uint8_t> enclosed = enclosed_places(scene, faces_, facing);
     const std::vector<std::optional<Hit>> floor = faces_.first_hits(down);
     std::vector<double> heights;

@@ -40,7 +40,7 @@ std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& s
 
 Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
                      const Observer& observer) {
-  return take_picture(scene, simulation,
+  return take_picture(simulation,
                       {.camera = camera_for(settings, scene),
                        .colors = settings.colors,
                        .width = settings.size[0],

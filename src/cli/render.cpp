@@ -18,8 +18,8 @@
 #include "output/image/write_observers.h"
 #include "output/image/write_picture.h"
 #include "page/write_page.h"
+#include "pipeline/world.h"
 #include "scene/limits.h"
-#include "visibility/tracing.h"
 
 #include <filesystem>
 #include <iostream>
@@ -54,19 +54,19 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
 }
 
 // With what is enclosed by day, which the file does not tell.
-Simulation stored_solution(const std::filesystem::path& file, const Scene& scene) {
+Simulation stored_solution(const std::filesystem::path& file, const std::shared_ptr<const Scene>& scene) {
   Simulation simulation = read_solution(file, scene);
-  if (scene.sky || scene.sun)
-    simulation.enclosed = enclosed_patches(scene, simulation.tracing->all_faces(scene), simulation.mesh);
+  if (scene->sky || scene->sun)
+    simulation.enclosed = enclosed_patches(*scene, simulation.world->all_faces(), simulation.mesh);
   return simulation;
 }
 
 void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                             const std::vector<Picture>& pictures) {
-  const SolvedSurface surface = surface_of(scene, simulation);
+  const SolvedSurface surface = surface_of(simulation);
   Page page{.scene = scene,
             .provenance = {.command_line = arguments.command_line,
-                           .exposure = exposure_of(scene, simulation),
+                           .exposure = exposure_of(simulation),
                            .scene_hash = scene_hash(scene)},
             .surface = &surface};
   for (const Picture& picture : pictures) page.pictures.push_back(&picture);
@@ -76,7 +76,7 @@ void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene
 // Returns what is said of it.
 std::string write_lightmap_of(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                               const Observer& observer) {
-  const Lightmap map = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
+  const Lightmap map = bake_lightmap(simulation, arguments.lightmap.options, observer);
   const WritingGuard guard;
   write_lightmap(arguments.lightmap.folder, scene, simulation, map,
                  {.command_line = arguments.command_line, .scene_hash = scene_hash(scene)});
@@ -100,17 +100,18 @@ ExitCode render(const RenderArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
-  const Scene scene = read_models(arguments.models, arguments.read, observer);
+  const auto read = std::make_shared<const Scene>(read_models(arguments.models, arguments.read, observer));
+  const Scene& scene = *read;
   check_limits(scene);
   require_cameras(wanted, scene);
-  const Simulation simulation = stored_solution(arguments.solution, scene);
+  const Simulation simulation = stored_solution(arguments.solution, read);
   std::optional<Simulation> other;
-  if (!arguments.difference.empty()) other = stored_solution(arguments.difference, scene);
+  if (!arguments.difference.empty()) other = stored_solution(arguments.difference, read);
 
   // 3. Take the pictures, and write each as soon as it is there; the first Ctrl-C ends with the one at hand
   std::vector<std::filesystem::path> written;
   if (!arguments.observers.empty()) {
-    const auto readings = read_observers(scene, simulation, observers_of(wanted, scene), observer);
+    const auto readings = read_observers(simulation, observers_of(wanted, scene), observer);
     const WritingGuard guard;
     write_observers(arguments.observers, readings);
     written.push_back(arguments.observers);

@@ -52,7 +52,7 @@ struct Views {
 };
 
 struct Results {
-  Scene scene;
+  std::shared_ptr<const Scene> scene;
   Simulation simulation;
   Views views;
   std::vector<IterateIrradiance> iterates;
@@ -151,7 +151,7 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
   try {
     if (!scene.sensors.empty()) {
       std::vector<std::filesystem::path> files = points_outputs(arguments, scene);
-      views.sensors = read_sensors(scene, simulation, observer);
+      views.sensors = read_sensors(simulation, observer);
       views.points_outputs = std::move(files);
       looking.finish(Stage::gather);
     }
@@ -164,7 +164,7 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
       looking.finish(Stage::render);
     }
     if (!arguments.lightmap.folder.empty()) {
-      views.lightmap = bake_lightmap(scene, simulation, arguments.lightmap.options, observer);
+      views.lightmap = bake_lightmap(simulation, arguments.lightmap.options, observer);
       looking.finish(Stage::render);
     }
   } catch (const Cancelled&) {
@@ -189,8 +189,8 @@ Views views_until_stopped(const Scene& scene, Simulation& simulation, const Solv
 Report report_on(const Results& results, const Request& request) {
   const SensorView& sensors = results.views.sensors;
   const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
-  return report_of(results.scene, request, results.simulation,
-                   are_read ? sensor_facts(results.scene.sensors, sensors.readings, sensors.warnings) : SensorFacts{});
+  return report_of(*results.scene, request, results.simulation,
+                   are_read ? sensor_facts(results.scene->sensors, sensors.readings, sensors.warnings) : SensorFacts{});
 }
 
 // Tells of each mesh as soon as it is solved, unless the run is quiet.
@@ -217,11 +217,11 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
 
   StageClock reading;
   SolveInput input = read(arguments, observer);
-  results.scene = std::move(input.scene);
+  results.scene = std::make_shared<const Scene>(std::move(input.scene));
   reading.finish(Stage::read);
   line.hide();
-  print_scene_warnings(results.scene);
-  tell_of_long_work(results.scene, arguments, line);
+  print_scene_warnings(*results.scene);
+  tell_of_long_work(*results.scene, arguments, line);
 
   Iterates iterates(!arguments.series.empty());
   const auto observed = [&](const Progress& progress) {
@@ -231,14 +231,14 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   Steps with{.exchange = input.exchange, .ray_exchange = input.ray_exchange};
   if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
   with.look = tell_of_meshes(arguments, line);
-  with.row_blocks = checkpoint.blocks({results.scene, input.request.effects});
+  with.row_blocks = checkpoint.blocks({*results.scene, input.request.effects});
   simulation = simulate(results.scene, input.request, observed, with);
   if (!may_write_what_is_there()) throw Cancelled();
   results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   results.provenance = {.command_line = arguments.command_line,
-                        .exposure = exposure_of(results.scene, simulation),
-                        .scene_hash = scene_hash(results.scene)};
+                        .exposure = exposure_of(simulation),
+                        .scene_hash = scene_hash(*results.scene)};
   return results;
 }
 
@@ -252,17 +252,17 @@ std::vector<std::array<Point, 2>> section_at(const SensorGroup& group, const Sce
 void write_readings(const std::filesystem::path& file, const Results& results, MapOptions map) {
   const Readings& readings = results.views.sensors.readings;
   if (file.extension() != ".svg" && file.extension() != ".png")
-    return write_points(file, results.scene.sensors, readings);
-  map.up = results.scene.up;
-  map.north = results.scene.north;
-  map.north_known = results.scene.sun || results.scene.sky;
-  for (const SensorGroup& group : results.scene.sensors) map.sections.push_back(section_at(group, results.scene));
-  write_sensor_map(file, results.scene.sensors, readings, map);
+    return write_points(file, results.scene->sensors, readings);
+  map.up = results.scene->up;
+  map.north = results.scene->north;
+  map.north_known = results.scene->sun || results.scene->sky;
+  for (const SensorGroup& group : results.scene->sensors) map.sections.push_back(section_at(group, *results.scene));
+  write_sensor_map(file, results.scene->sensors, readings, map);
 }
 
 Page page_of_run(const Results& results, const SolvedSurface& surface) {
   const Views& views = results.views;
-  Page page{.scene = results.scene, .provenance = results.provenance, .surface = &surface, .report = &results.report};
+  Page page{.scene = *results.scene, .provenance = results.provenance, .surface = &surface, .report = &results.report};
   if (views.sensors.readings.irradiance.size() > 0) page.readings = &views.sensors.readings;
   if (views.picture) page.pictures.push_back(&*views.picture);
   if (views.page_picture) page.pictures.push_back(&*views.page_picture);
@@ -298,7 +298,7 @@ void write_solution(const SolveArguments& arguments, const Results& results,
   const WritingGuard guard;
   for (const std::filesystem::path& file : arguments.results)
     outputs.add(file, [&](const auto& to) { write_result(to, *surface, results.provenance); });
-  if (has_views(arguments, results.scene)) outputs.publish();
+  if (has_views(arguments, *results.scene)) outputs.publish();
 }
 
 void throw_if_interrupted() {
@@ -317,20 +317,20 @@ void write_views(const SolveArguments& arguments, const Results& results, const 
   const Views& views = results.views;
   add(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, *surface)); });
   if (views.picture) {
-    add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, results.scene); });
+    add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, *results.scene); });
     add(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
   }
   for (const Path& file : views.points_outputs)
     add(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
   if (views.lightmap) {
     throw_if_interrupted();
-    write_lightmap(arguments.lightmap.folder, results.scene, results.simulation, *views.lightmap, results.provenance);
+    write_lightmap(arguments.lightmap.folder, *results.scene, results.simulation, *views.lightmap, results.provenance);
   }
   add(arguments.report, [&](const Path& to) { write_report(to, results.report, results.provenance); });
   throw_if_interrupted();
   if (arguments.series.empty()) return outputs.publish();
   write_series(
-      arguments.series, results.scene, results.simulation, results.iterates, results.provenance,
+      arguments.series, *results.scene, results.simulation, results.iterates, results.provenance,
       [](const Progress&) { return !interrupted(); },
       [&](const std::string& collection) {
         add(arguments.series, [&](const Path& to) { write_bytes(to, collection); });
@@ -363,7 +363,7 @@ void print_results(const SolveArguments& arguments, const Results& results,
                                   how_to_know_errors(arguments, results.report.solution.unfinished));
   if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
   std::cout << files_line(written) << summary_of_run(results.report, is_verbose) << std::flush;
-  std::vector<std::string> all = notes(results.scene, results.simulation);
+  std::vector<std::string> all = notes(*results.scene, results.simulation);
   if (!note_on_checkpoint.empty()) all.insert(all.begin(), note_on_checkpoint);
   print_notes(all, false, is_verbose ? all.size() : most_notes);
 }
@@ -399,12 +399,12 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!arguments.discards) keep_what_is_there();
   std::optional<SolvedSurface> surface;
   if (!arguments.results.empty() || !arguments.page.empty())
-    surface.emplace(surface_of(results.scene, results.simulation, arguments.ambient_distance));
+    surface.emplace(surface_of(results.simulation, arguments.ambient_distance));
   Outputs outputs;
   write_solution(arguments, results, surface, outputs);
 
   // 2. Look at it, and write the views
-  results.views = views_until_stopped(results.scene, results.simulation, arguments, observer);
+  results.views = views_until_stopped(*results.scene, results.simulation, arguments, observer);
   results.report = report_on(results, arguments.request);
   line.reset();
   write_views(arguments, results, surface, outputs);

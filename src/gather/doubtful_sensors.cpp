@@ -59,11 +59,12 @@ std::string sentence(const SensorGroup& group, std::size_t k, Standing standing)
 
 }  // namespace
 
-std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const SensorPlace> places) {
+std::vector<std::string> doubtful_sensors(const std::vector<SensorGroup>& sensors,
+                                          std::span<const SensorPlace> places) {
   std::vector<std::string> sentences;
   std::size_t doubtful = 0;
   std::size_t place = 0;
-  for (const SensorGroup& group : scene.sensors) {
+  for (const SensorGroup& group : sensors) {
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++place) {
       const Standing standing = places[place].standing;
       if (standing == Standing::free) continue;
@@ -77,12 +78,12 @@ std::vector<std::string> doubtful_sensors(const Scene& scene, std::span<const Se
   return sentences;
 }
 
-std::vector<std::string> sensors_far_off(const Scene& scene) {
+std::vector<std::string> sensors_far_off(const Scene& scene, const std::vector<SensorGroup>& sensors) {
   const Box box = bounds(scene);
   const double length = box.diagonal().norm();
   std::string first;
   std::size_t count = 0;
-  for (const SensorGroup& group : scene.sensors) {
+  for (const SensorGroup& group : sensors) {
     for (std::size_t k = 0; k < group.sensors.size(); ++k) {
       if (box.exteriorDistance(group.sensors[k].point) <= length) continue;
       if (count++ == 0) first = place_of(group, k);
@@ -94,12 +95,13 @@ std::vector<std::string> sensors_far_off(const Scene& scene) {
           "). Are they in the model's unit? Points for a scene file are in metres, whatever its unit"};
 }
 
-std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const PatchMesh& mesh) {
+std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const std::vector<SensorGroup>& sensors,
+                                                   const PatchMesh& mesh) {
   const std::vector<PatchIndex> patches = patches_with_pictures(scene, mesh);
   if (patches.empty()) return {};
   std::string first;
   std::size_t count = 0;
-  for (const SensorGroup& group : scene.sensors) {
+  for (const SensorGroup& group : sensors) {
     std::vector<std::uint8_t> is_close(group.sensors.size(), 0);
     parallel_for(group.sensors.size(), [&](std::size_t k) {
       is_close[k] = std::any_of(patches.begin(), patches.end(),

@@ -243,9 +243,10 @@ PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Facet> facet
 
 }  // namespace
 
-std::vector<SensorPlace> place_sensors(const Scene& scene, const KeptSides& sides, const Occluder& occluder) {
+std::vector<SensorPlace> place_sensors(const Scene& scene, const std::vector<SensorGroup>& groups,
+                                       const KeptSides& sides, const Occluder& occluder) {
   const std::vector<Facet> facets = facets_of(scene);
-  const std::vector<Sensor> sensors = all_sensors(scene.sensors);
+  const std::vector<Sensor> sensors = all_sensors(groups);
   const double extent = extent_of(scene);
   std::vector<SensorPlace> places(sensors.size());
   std::vector<Point> points(sensors.size());

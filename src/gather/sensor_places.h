@@ -29,6 +29,7 @@ struct SensorPlace {
 /// directions meet sides that take no part, by `sides` or by Sides::automatic, or meet from behind the polygons of one
 /// shell that is open only where it stands on other polygons, or meet those, and neither the sensor nor the places met
 /// see a lamp. The occluder must be one of all polygons. O(sensors x polygons).
-std::vector<SensorPlace> place_sensors(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
+std::vector<SensorPlace> place_sensors(const Scene& scene, const std::vector<SensorGroup>& groups,
+                                       const KeptSides& sides, const Occluder& occluder);
 
 }  // namespace patchlight

@@ -14,8 +14,8 @@ constexpr std::size_t most_crossings = 1 << 16;
 
 LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
     : bounds_(bounds(scene)),
-      opaque_(tracing.opaque_faces(scene)),
-      clear_(tracing.clear_faces(scene)),
+      opaque_(tracing.opaque_faces()),
+      clear_(tracing.clear_faces()),
       panes_(scene),
       bands_(number_of_bands(scene)) {}
 

@@ -22,7 +22,7 @@ constexpr std::size_t most_targets = 256;
 }  // namespace
 
 MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing)
-    : sides_(sides), occluder_(tracing.all_faces(scene)) {
+    : sides_(sides), occluder_(tracing.all_faces()) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     if (sides.is_specular(p)) targets_.push_back(opening_at(scene, p));
   std::stable_sort(targets_.begin(), targets_.end(),

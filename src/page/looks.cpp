@@ -46,7 +46,7 @@ Json colours_part(const Colours& colours) {
 
 // Radiances, one row for each direction; no rows without a sky.
 Field radiance_of_sky(const SolvedSurface& surface) {
-  const auto sky = sky_of(surface.scene, surface.simulation.plan);
+  const auto sky = sky_of(surface.simulation);
   if (!sky) return {};
   const std::vector<Vector> directions = directions_around(surface.scene.up.normalized());
   Field radiance(static_cast<Eigen::Index>(directions.size()), surface.simulation.solution.radiosity.cols());

@@ -5,10 +5,10 @@
 #include "page/drawn_faces.h"
 #include "page/looks.h"
 #include "page/packed.h"
+#include "pipeline/world.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 #include "solve/scattering.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +125,7 @@ std::size_t slot_of(PolygonIndex polygon, Side side) {
 // `deepest`. Empty where nothing overlaps.
 std::vector<std::uint8_t> layers_of(const SolvedSurface& surface) {
   constexpr std::uint8_t deepest = 7;
-  const Coverings& coverings = surface.simulation.tracing->coverings();
+  const Coverings& coverings = surface.simulation.world->tracing().coverings();
   std::vector<std::uint8_t> layers(coverings.over.size(), 0);
   const auto normal = [&](PolygonIndex polygon) { return area_vector(corner_points(surface.scene, polygon)); };
   for (bool changed = true; changed;) {

@@ -96,13 +96,13 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
 // What the light makes bright.
 BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
   const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
-  return {mesh, summed_over_bands(expected), bright, run.tracing->between_patches()};
+  return {mesh, summed_over_bands(expected), bright, run.world->between_patches()};
 }
 
 // Rows, with rays towards that.
 TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light,
                        const Known& known) {
-  const Occluder& occluder = run.tracing->between_patches();
+  const Occluder& occluder = run.world->between_patches();
   const BrightPatches bright_patches = bright_patches_of(run, mesh, light);
   RayOptions options = rays_as_planned(plan, mesh);
   options.seed = seed_on(known, options.seed);
@@ -128,7 +128,7 @@ std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>&
 
 // Colours may differ, but rays have gone on from the polygons from which they would go on now.
 void require_same_kinds(const RayExchange& known, const Run& run) {
-  const auto now = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
+  const auto now = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
   const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();
   const std::optional<PolygonIndex> other = is_as_long ? other_kind(known.specular_kinds, now) : 0;
   if (!other) return;
@@ -155,13 +155,13 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   light.in_mirrors = lamps_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light, known);
-    if (run.tracing->has_specular_faces())
-      exchange.specular_kinds = run.tracing->between_patches().specular_faces().kinds(run.scene.polygons.size());
+    if (run.world->tracing().has_specular_faces())
+      exchange.specular_kinds = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};
   }
   require_same_kinds(exchange, run);
   // Not stored, as it is of the materials.
-  exchange.rows.lost.clear = clear_shares(mesh, run.tracing->between_patches());
+  exchange.rows.lost.clear = clear_shares(mesh, run.world->between_patches());
   const BrightPatches now = bright_patches_of(run, mesh, light);
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);

@@ -109,7 +109,7 @@ double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh
 
 // A matrix has half of all pairs, each row has as many as there are patches.
 double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
-  const Occluder occluder(scene, blockers_of(plan), find_coverings(scene, plan.sides));
+  const Occluder occluder(scene, blockers_of(plan), *plan.coverings);
   const double of_matrix = expected_assembly_seconds(mesh, occluder, plan.assembly);
   const bool lamps_alone = !keeps_entries(plan.assembly.storage) && !simulates(plan, Effect::interreflection);
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;

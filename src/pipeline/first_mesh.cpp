@@ -64,7 +64,7 @@ PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, co
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge) {
   if (plan.contacts.on.empty())
     return tessellate(scene, plan.sides, edges_for(scene, max_edge, plan.goal.get()), {}, plan.graded_edges);
-  const Tracing tracing(scene, find_coverings(scene, plan.sides), blockers_of(plan), reflections_of(plan));
+  const Tracing tracing(scene, *plan.coverings, blockers_of(plan), reflections_of(plan));
   return open_patches(scene, plan, max_edge, tracing.between_patches());
 }
 

@@ -14,7 +14,7 @@ FormFactors find_form_factors(const Scene& scene, const Request& request, const 
   kept.assembly.storage = Storage::tiles;
   SceneInPatches found = scene_in_patches(scene, std::move(kept));
   const Plan& plan = found.plan;
-  Exchange exchange = trace_exchange(found.mesh, found.tracing->between_patches(), plan.assembly, observer);
+  Exchange exchange = trace_exchange(found.mesh, found.world->between_patches(), plan.assembly, observer);
   if (plan.assembly.close) {
     const EntryErrors none;
     const bool weighs = weighs_by_errors(exchange.lost, found.mesh.size());

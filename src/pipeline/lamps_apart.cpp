@@ -61,10 +61,10 @@ std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, con
 
 // The factors of the lamps that are apart, without rows.
 RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
-  const std::vector<LampSide> lamps = lamps_apart(run.scene, mesh, problem, *run.tracing);
+  const std::vector<LampSide> lamps = lamps_apart(run.scene, mesh, problem, run.world->tracing());
   RayExchange found;
   for (const LampSide& lamp : lamps) found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
-  found.lamp_factors = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
+  found.lamp_factors = lamp_factors(run.scene, mesh, run.world->between_patches(), lamps,
                                     {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
   return found;
 }
@@ -73,7 +73,7 @@ LampFactors factors_of_lamps(const std::vector<PatchRange>& lamps, const Run& ru
                              const PatchMesh& mesh) {
   std::vector<LampSide> sides;
   for (const PatchRange& lamp : lamps) sides.push_back({mesh.polygon[lamp.begin], mesh.side[lamp.begin]});
-  return lamp_factors(run.scene, mesh, run.tracing->between_patches(), sides,
+  return lamp_factors(run.scene, mesh, run.world->between_patches(), sides,
                       {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
 }
 
@@ -111,13 +111,13 @@ LampValues joined(const LampValues& some, const LampValues& more) {
 RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                        const RadiosityProblem& problem) {
   const std::vector<LampSide> lamps = new_lamps(run, mesh, problem, known);
-  if (run.tracing->has_specular_faces() || !known.specular_kinds.empty()) {
+  if (run.world->tracing().has_specular_faces() || !known.specular_kinds.empty()) {
     for (const LampSide& lamp : lamps) known.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
     known.lamp_factors = factors_of_lamps(known.lamps, run, plan, mesh);
     return known;
   }
   if (lamps.empty()) return known;
-  const LampFactors more = lamp_factors(run.scene, mesh, run.tracing->between_patches(), lamps,
+  const LampFactors more = lamp_factors(run.scene, mesh, run.world->between_patches(), lamps,
                                         {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
   LampFactors& factors = known.lamp_factors;
   for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
@@ -129,12 +129,12 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
 // What lamps that are apart send over mirrors, which their factors do not have.
 DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
                                   const std::vector<PatchRange>& lamps) {
-  if (lamps.empty() || run.tracing->reflections() == Reflections::kept) return {};
+  if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
   Scene scene = run.scene;
   scene.luminaires.clear();
   scene.sun.reset();
   scene.sky.reset();
-  const Lighting lighting = lighting_of(scene, *run.tracing);
+  const Lighting lighting = lighting_of(scene, run.world->tracing());
   if (!lighting.mirrors) return {};
   std::vector<LampFace> faces;
   for (const PatchRange& patches : lamps) {

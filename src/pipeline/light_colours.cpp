@@ -139,14 +139,14 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
   into.plan = meshed.plan;
   into.notes = run.notes;
   into.mesh = meshed.mesh.patches;
-  into.tracing = run.tracing;
+  into.world = run.world;
   into.enclosed = parts.front().simulation.enclosed;
   const Bands bands = bands_of(run.scene);
   const Spectrum shares = luminous_shares(bands);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     add_effects(all, parts[k]);
     // Whole patches have the same area in all colours, what they hold of them has not.
-    const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].scene);
+    const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].world->planned_scene());
     const IntoBands columns{colours[k].bands, static_cast<Eigen::Index>(bands.size())};
     const double weight = luminous_weight(shares, colours[k].bands);
     put_problem(into.problem, part.problem, columns);
@@ -163,7 +163,7 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
     const double tolerance = part.plan.solver.relative_error.value_or(default_tolerance);
     into.plan.solver.relative_error = k == 0 ? tolerance : std::min(tolerance, *into.plan.solver.relative_error);
   }
-  into.transport.lost.clear = clear_shares(into.mesh, run.tracing->between_patches());
+  into.transport.lost.clear = clear_shares(into.mesh, run.world->between_patches());
   all.simulation = of_held_parts(std::move(all.simulation), run.scene);
   return all;
 }
@@ -215,16 +215,13 @@ Plan in_bands(Plan plan, const std::vector<Eigen::Index>& bands) {
 }  // namespace
 
 std::vector<LightColour> light_colours(const Run& run) {
-  if (run.plan.assembly.storage != Storage::rays || !run.tracing->has_specular_faces()) return {};
-  const Reflections reflections = run.tracing->reflections();
+  if (run.plan.assembly.storage != Storage::rays || !run.world->tracing().has_specular_faces()) return {};
+  const Reflections reflections = run.world->tracing().reflections();
   const auto groups = alike_bands(specular_spectra(run.scene, reflections), number_of_bands(run.scene));
   if (groups.size() < 2) return {};
   std::vector<LightColour> colours;
-  for (const std::vector<Eigen::Index>& bands : groups) {
-    Scene scene = in_bands(run.scene, bands);
-    auto tracing = std::make_shared<const Tracing>(scene, run.tracing->coverings(), blockers_of(run.plan), reflections);
-    colours.push_back({bands, std::move(scene), std::move(tracing)});
-  }
+  for (const std::vector<Eigen::Index>& bands : groups)
+    colours.push_back({bands, run.world->in_bands(bands, in_bands(run.plan, bands))});
   return colours;
 }
 
@@ -235,7 +232,8 @@ SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& col
   std::vector<SolvedMesh> parts;
   for (const LightColour& colour : colours) {
     const Plan plan = in_bands(run.plan, colour.bands);
-    const Run part{colour.scene, run.request, plan, run.notes, colour.tracing, run.with, run.observer, true};
+    const Run part{
+        colour.world->planned_scene(), run.request, plan, run.notes, colour.world, run.with, run.observer, true};
     const MeshToSolve in_part{meshed.mesh, in_bands(meshed.plan, colour.bands), {}};
     const PatchMesh& mesh = in_part.mesh.patches;
     RawTransport raw =

@@ -12,8 +12,7 @@ namespace patchlight {
 /// Bands that clear faces and mirrors treat alike. Form factors over these are one set for each colour of light.
 struct LightColour {
   std::vector<Eigen::Index> bands;  ///< of the run's scene
-  Scene scene;                      ///< in_bands() of it
-  std::shared_ptr<const Tracing> tracing;
+  std::shared_ptr<const World> world;
 };
 
 /// The colours that a run by rows of rays distinguishes; empty where one set of form factors holds for all bands.

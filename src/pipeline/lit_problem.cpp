@@ -18,17 +18,14 @@ namespace {
 DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
                                               LightingOptions options) {
   options.areas = important_areas(mesh, plan.goal.get());
-  const auto trace = [&](const Scene& scene) {
-    const Lighting lighting = lighting_of(scene, *run.tracing);
+  const auto trace = [&](const Lighting& lighting) {
     DirectIrradiance direct = direct_irradiance(lighting, mesh, options, run.observer);
     if (lighting.mirrors) add(direct, mirrored_irradiance(lighting, {}, mesh, options, run.observer));
     return direct;
   };
-  if (plan.lamp_colour.size() == 0) return trace(run.scene);
+  if (plan.lamp_colour.size() == 0) return trace(run.world->lighting());
   // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
-  Eigen::Index brightest = 0;
-  plan.lamp_colour.maxCoeff(&brightest);
-  const DirectIrradiance found = trace(in_one_band(run.scene, brightest));
+  const DirectIrradiance found = trace(run.world->lighting_in_one_band());
   const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
   return {in_all(found.irradiance), in_all(found.standard_error)};
 }

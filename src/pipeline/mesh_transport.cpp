@@ -212,13 +212,13 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
 
 // Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
 Assembly assembly_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
-  const Occluder& occluder = run.tracing->between_patches();
+  const Occluder& occluder = run.world->between_patches();
   if (!known.exchange) return assemble_exchange_areas(mesh, occluder, plan.assembly, run.observer);
   return assemble_exchange_areas(mesh, occluder, plan.assembly, {*known.exchange, known.place}, run.observer);
 }
 
 LostShare lost_share_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
-  const Occluder& occluder = run.tracing->between_patches();
+  const Occluder& occluder = run.world->between_patches();
   if (!known.lost)
     return measure_lost_share(mesh, occluder, plan.assembly.lost_share_rays, plan.assembly.seed, run.observer);
   return measure_lost_share(mesh, occluder, KnownShares{*known.lost, known.place}, plan.assembly.seed, run.observer);
@@ -228,11 +228,11 @@ LostShare lost_share_of(const Run& run, const Plan& plan, const PatchMesh& mesh,
 Exchange exchange_on(const Run& run, const Plan& plan, const PatchMesh& mesh) {
   if (run.with.exchange) {
     Exchange exchange = run.with.exchange(mesh);
-    exchange.lost.clear = clear_shares(mesh, run.tracing->between_patches());  // not stored: it is of the materials
+    exchange.lost.clear = clear_shares(mesh, run.world->between_patches());  // not stored: it is of the materials
     return exchange;
   }
   const auto find = keeps_entries(plan.assembly.storage) ? trace_exchange : exchange_on_demand;
-  return find(mesh, run.tracing->between_patches(), plan.assembly, run.observer);
+  return find(mesh, run.world->between_patches(), plan.assembly, run.observer);
 }
 
 TransportFacts facts_of(const Exchange& exchange) {
@@ -273,7 +273,7 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   // 1. Rows in the colour of this run.
   RayExchange& exchange = found.exchange;
   RayLight& light = found.light;
-  exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.tracing->between_patches());
+  exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.world->between_patches());
   light.distance = std::move(exchange.rows.distance);
 
   // 2. Means over the exposed part of each patch, which is known but for its own error.
@@ -358,7 +358,7 @@ RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& me
   found.facts = facts_of(found.exchange);
   if (!run.with.exchange) {
     const auto rays = found.facts.counts.shadow_rays / 16;
-    found.facts.bare_rays_per_second = bare_ray_rate(mesh, run.tracing->between_patches(), rays);
+    found.facts.bare_rays_per_second = bare_ray_rate(mesh, run.world->between_patches(), rays);
   }
   return found;
 }
@@ -373,7 +373,7 @@ MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMes
                           .rays = {},
                           .light = {}};
   if (!keeps_entries(plan.assembly.storage)) {
-    const Occluder& occluder = run.tracing->between_patches();
+    const Occluder& occluder = run.world->between_patches();
     transport.rows = on_demand_transport(mesh.patches, occluder, plan.assembly, transport.area);
     return transport;
   }

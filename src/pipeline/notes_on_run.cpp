@@ -13,12 +13,10 @@ namespace patchlight {
 namespace {
 
 // Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
-std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& tracing) {
+std::vector<std::string> notes_on_chains(const World& world) {
+  const Tracing& tracing = world.tracing();
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
-  Scene without_sky = scene;
-  without_sky.sky.reset();
-  const Lighting lighting = lighting_of(without_sky, tracing);
-  const MirrorChains& found = lighting.mirrors->paths.found();
+  const MirrorChains& found = world.lighting().mirrors->paths.found();
   constexpr double noticeable = 0.01;
   if (found.unfollowed_share < noticeable) return {};
   std::ostringstream text;
@@ -32,12 +30,14 @@ std::vector<std::string> notes_on_chains(const Scene& scene, const Tracing& trac
 
 }  // namespace
 
-std::vector<std::string> notes_on_run(const Scene& scene, const Tracing& tracing, const Plan& plan) {
+std::vector<std::string> notes_on_run(const World& world, const Plan& plan) {
+  const Scene& scene = world.scene();
   std::vector<std::string> notes = plan.notes;
-  for (const Problem& problem : problems_with_overlaps(scene, tracing.coverings())) notes.push_back(problem.what);
-  for (std::string& note : notes_on_chains(scene, tracing)) notes.push_back(std::move(note));
+  for (const Problem& problem : problems_with_overlaps(scene, world.tracing().coverings()))
+    notes.push_back(problem.what);
+  for (std::string& note : notes_on_chains(world)) notes.push_back(std::move(note));
   if (refines(plan.accuracy)) return notes;
-  for (std::string& note : notes_on_close_lamps(scene, tracing.between_patches(), plan.max_edge))
+  for (std::string& note : notes_on_close_lamps(scene, world.between_patches(), plan.max_edge))
     notes.push_back(std::move(note));
   return notes;
 }
@@ -45,7 +45,7 @@ std::vector<std::string> notes_on_run(const Scene& scene, const Tracing& tracing
 std::vector<std::string> notes_on_hidden_lamps(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
   const Eigen::VectorXd& overlaid = simulation.transport.lost.overlaid;
-  const Occluder& occluder = simulation.tracing->between_patches();
+  const Occluder& occluder = simulation.world->between_patches();
   std::set<std::string> names;
   for (PatchIndex i = 0; i < overlaid.size(); ++i) {
     const bool was_hidden = overlaid[i] == 1 && emits(scene, mesh.polygon[i], mesh.side[i]);

@@ -2,7 +2,7 @@
 
 #include "patchlight/simulate.h"
 
-#include "visibility/tracing.h"
+#include "pipeline/world.h"
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace patchlight {
 
 /// The plan's notes, those on polygons that lie one on the other and, where patches are not refined, on lamps that are
 /// close to what they light: else error bars see these.
-std::vector<std::string> notes_on_run(const Scene& scene, const Tracing& tracing, const Plan& plan);
+std::vector<std::string> notes_on_run(const World& world, const Plan& plan);
 
 /// Of patches with known form factors those that emit, and lie over what they lay under when these were made, as a lamp
 /// that is let into a ceiling and was dark then.

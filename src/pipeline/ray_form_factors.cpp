@@ -16,9 +16,9 @@ RayFormFactors find_ray_form_factors(const Scene& scene, const Request& request,
   const ThreadLimit threads(request.resources.threads);
   SceneInPatches found = scene_in_patches(scene, by_rays(request));
   const Steps with;
-  const Run run{scene, found.request, found.plan, found.notes, found.tracing, with, observer};
+  const Run run{scene, found.request, found.plan, found.notes, found.world, with, observer};
   RayExchange exchange = trace_ray_exchange(run, found.plan, found.mesh);
-  TracedRows rows = weighed_rows(exchange.rows, found.mesh, found.tracing->between_patches());
+  TracedRows rows = weighed_rows(exchange.rows, found.mesh, found.world->between_patches());
   const RayTransport transport(std::move(rows.halves));
   const Eigen::VectorXd row_sum = transport.apply(Field::Ones(found.mesh.size(), 1)).matrix();
   return {

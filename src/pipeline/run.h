@@ -5,7 +5,7 @@
 
 #include "lighting/direct_irradiance.h"
 #include "mesh/nested_mesh.h"
-#include "visibility/tracing.h"
+#include "pipeline/world.h"
 
 #include <cstdint>
 #include <memory>
@@ -17,11 +17,11 @@ namespace patchlight {
 
 /// What all meshes of a run have in common.
 struct Run {
-  const Scene& scene;  ///< with the lights that the plan simulates
+  const Scene& scene;  ///< World::planned_scene()
   const Request& request;
   const Plan& plan;
   const std::vector<std::string>& notes;  ///< Simulation::notes
-  std::shared_ptr<const Tracing> tracing;
+  std::shared_ptr<const World> world;
   const Steps& with;
   const Observer& observer;
   bool is_part = false;  ///< it has some of the bands of another run, see LightColours

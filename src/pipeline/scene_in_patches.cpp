@@ -14,13 +14,13 @@ SceneInPatches scene_in_patches(const Scene& scene, Request request) {
   if (request.mesh.sides == Sides::automatic && !has_lamp(scene)) request.mesh.sides = Sides::front;
   Plan plan = plan_form_factors(scene, request);
   require_memory(scene, request, plan);
-  auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides),
-                                                 Occluder::Blockers::inside_hull, reflections_of(plan));
-  PatchMesh mesh = open_patches(scene, plan, plan.max_edge, tracing->between_patches());
+  auto world = std::make_shared<const World>(std::make_shared<const Scene>(scene), plan);
+  PatchMesh mesh = open_patches(scene, plan, plan.max_edge, world->between_patches());
   require_memory(mesh.size(), request, plan);
   std::vector<std::string> notes;
-  for (const Problem& problem : problems_with_overlaps(scene, tracing->coverings())) notes.push_back(problem.what);
-  return {std::move(request), std::move(plan), std::move(mesh), std::move(tracing), std::move(notes)};
+  for (const Problem& problem : problems_with_overlaps(scene, world->tracing().coverings()))
+    notes.push_back(problem.what);
+  return {std::move(request), std::move(plan), std::move(mesh), std::move(world), std::move(notes)};
 }
 
 }  // namespace patchlight

@@ -4,7 +4,7 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 
-#include "visibility/tracing.h"
+#include "pipeline/world.h"
 
 #include <memory>
 #include <string>
@@ -17,7 +17,7 @@ struct SceneInPatches {
   Request request;  ///< as it is carried out
   Plan plan;
   PatchMesh mesh;
-  std::shared_ptr<const Tracing> tracing;
+  std::shared_ptr<const World> world;
   std::vector<std::string> notes;  ///< on polygons that lie one on the other
 };
 

@@ -184,7 +184,7 @@ MeshToSolve Search::first() const {
   if (run_.with.mesh) {
     first.mesh.patches = run_.with.mesh();
   } else {
-    first.mesh = first_mesh(run_.scene, run_.plan, run_.tracing->between_patches());
+    first.mesh = first_mesh(run_.scene, run_.plan, run_.world->between_patches());
   }
   first.plan.solver.keeps_unfinished = static_cast<bool>(run_.with.keeps_unfinished);
   if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {

@@ -131,9 +131,9 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   simulation.transport = transport.facts;
   simulation.problem = std::move(problem.problem);
   simulation.direct_standard_error = std::move(problem.direct_standard_error);
-  simulation.tracing = run.tracing;
+  simulation.world = run.world;
   if (run.scene.sky || run.scene.sun)
-    simulation.enclosed = enclosed_patches(run.scene, run.tracing->all_faces(run.scene), simulation.mesh);
+    simulation.enclosed = enclosed_patches(run.scene, run.world->all_faces(), simulation.mesh);
   if (run.with.exchange || run.with.ray_exchange) {
     for (std::string& note : notes_on_hidden_lamps(run.scene, simulation)) simulation.notes.push_back(std::move(note));
   }

@@ -69,7 +69,7 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
                                         const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
   QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
   if (has_point_or_daylight(run.scene)) look.direct = direct_at_quarters(run, simulation, needed.bands, look);
-  const Occluder& occluder = run.tracing->between_patches();
+  const Occluder& occluder = run.world->between_patches();
   const SolvedProblem solved = needed.solved();
   UnseenDifferences unseen = unseen_differences({simulation.mesh, occluder, simulation.transport.lost, solved},
                                                 transport, weight, look, run.observer);
@@ -106,7 +106,7 @@ Field direct_difference(const Run& run, const Simulation& simulation, const Asse
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = simulation.plan.assembly;
   again.seed = hash({simulation.plan.assembly.seed, 1});
-  const auto transport = on_demand_transport(simulation.mesh, run.tracing->between_patches(), again, area);
+  const auto transport = on_demand_transport(simulation.mesh, run.world->between_patches(), again, area);
   const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, run.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }

@@ -175,13 +175,13 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
 
 }  // namespace
 
-std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides,
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, const Coverings& coverings,
                                       const std::vector<std::string>& interest, std::uint64_t seed) {
   if ((!scene.sky && !scene.sun) || !(kept_area(scene, sides) > 0)) return {};
 
   // 1. The polygons of enclosed spaces, and those that are named.
   const PatchMesh mesh = coarse_mesh(scene, sides);
-  const Occluder faces(scene, Occluder::Blockers::all, find_coverings(scene, sides));
+  const Occluder faces(scene, Occluder::Blockers::all, coverings);
   const Eigen::VectorXd enclosed = enclosed_patches(scene, faces, mesh);
   const Eigen::VectorXd named = interest_of(scene, mesh, interest, enclosed);
   if (total(enclosed) == 0 || total(named) == 0) return {};

@@ -7,6 +7,7 @@
 #include "mesh/mesher.h"
 #include "mesh/patch_edges.h"
 #include "mesh/patch_lookup.h"
+#include "scene/coverings.h"
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -39,7 +40,7 @@ struct Goal {
 /// The goal of a scene by daylight: the enclosed spaces, or the patches that `interest` names (interest_of()), which
 /// are meshed as finely as these. Null where there is no sky and no sun, no goal, or no surroundings: then every
 /// surface counts by its area. Naming the enclosed spaces gives the goal of no names. Costs some hundred thousand rays.
-std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides,
+std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, const Coverings& coverings,
                                       const std::vector<std::string>& interest, std::uint64_t seed);
 
 /// The kept sides of the polygons of the goal; all where `goal` is null.

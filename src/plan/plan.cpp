@@ -16,6 +16,7 @@
 #include "plan/memory.h"
 #include "plan/planned_lines.h"
 #include "plan/survey.h"
+#include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/problem_face.h"
 #include "scene/triangulate.h"
@@ -327,14 +328,15 @@ AccuracyOptions decided(AccuracyOptions accuracy) {
 Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   require_lamp(scene);
   KeptSides sides = sides_for(scene, asked);
+  const auto coverings = std::make_shared<const Coverings>(find_coverings(scene, sides));
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
   // An edge that is asked for is that of all patches.
   const bool has_goal = knows_lights && !asked.mesh.max_edge;
   const std::shared_ptr<const Goal> goal =
-      has_goal ? find_goal(scene, sides, asked.accuracy.interest, asked.assembly.seed) : nullptr;
+      has_goal ? find_goal(scene, sides, *coverings, asked.accuracy.interest, asked.assembly.seed) : nullptr;
   const KeptSides of_goal = sides_of_goal(sides, goal.get());
-  auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, knows_lights);
+  auto [contacts, notes_on_contacts] = planned_lines(scene, asked, sides, *coverings, knows_lights);
   const EffectFacts facts = survey_effects(scene, sides);
   const bool reflects = simulates(decide(facts, asked), Effect::interreflection);
   const bool mirrors =
@@ -360,6 +362,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const bool in_colour = simulates(decisions, Effect::colour);
   const auto left_out = [&] { return notes_on_left_out_sides(scene, *asked.mesh.kept_sides, asked.mesh.sides); };
   return {.sides = std::move(sides),
+          .coverings = coverings,
           .contacts = std::move(contacts),
           .graded_edges = asked.mesh.graded_edges,
           .max_edge = size.max_edge,
@@ -378,14 +381,16 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
   KeptSides sides = sides_for(scene, request);
+  const auto coverings = std::make_shared<const Coverings>(find_coverings(scene, sides));
   require_rays_for_colours(coloured_specular(scene, sides), request, request);
-  auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, false);
+  auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, *coverings, false);
   EdgeSearch search(scene, sides, contacts);
   PatchSize size = patch_size({scene, sides, contacts, search}, request);
   for (std::string& note : notes_on_pairs(scene, request)) size.notes.push_back(std::move(note));
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);
   return {.sides = std::move(sides),
+          .coverings = coverings,
           .contacts = std::move(contacts),
           .graded_edges = request.mesh.graded_edges,
           .max_edge = size.max_edge,

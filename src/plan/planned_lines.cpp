@@ -151,12 +151,12 @@ double area_of_faces(const Scene& scene) {
 }
 
 // The same with the edges of hard shadows, unless these are too many.
-PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const Request& request,
-                               const KeptSides& sides) {
+PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const Request& request, const KeptSides& sides,
+                               const Coverings& coverings) {
   const std::vector<LightPlace> lights = lights_with_hard_shadows(scene, request.effects.skip);
   if (!request.mesh.contact_lines || lights.empty()) return planned;
   const std::vector<std::uint8_t> is_bent = bent_faces(scene);
-  const auto shadows = find_shadow_lines(scene, sides, lights);
+  const auto shadows = find_shadow_lines(scene, sides, coverings, lights);
   ContactLines all = planned.lines;
   all.on.resize(scene.polygons.size());
   if (all.size == 0) all.size = std::sqrt(area_of_faces(scene));
@@ -179,9 +179,10 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
 
 }  // namespace
 
-PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides, bool knows_lights) {
+PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides,
+                           const Coverings& coverings, bool knows_lights) {
   PlannedLines planned = contacts_for(scene, request, sides);
-  return knows_lights ? with_shadow_edges(std::move(planned), scene, request, sides) : planned;
+  return knows_lights ? with_shadow_edges(std::move(planned), scene, request, sides, coverings) : planned;
 }
 
 }  // namespace patchlight

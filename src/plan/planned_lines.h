@@ -4,6 +4,8 @@
 #include "patchlight/scene/contact_lines.h"
 #include "patchlight/scene/sides.h"
 
+#include "scene/coverings.h"
+
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@ struct PlannedLines {
 /// Lines of contact, and the edges of hard shadows where the mesh may know of lights. What is worth a line where an
 /// accuracy is asked for is what it can feel, as a share of the area of all kept sides. Where they would be too
 /// many the longest alone, and on bent faces none.
-PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides, bool knows_lights);
+PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides,
+                           const Coverings& coverings, bool knows_lights);
 
 }  // namespace patchlight

@@ -79,16 +79,24 @@ bool is_forced(const Plan& plan, Effect effect) {
   });
 }
 
-// The scene with the lights that are not left out, and without colour when that is skipped by force.
+// The scene with the lights that are not left out, and without color when that is skipped by force.
 template <typename LeftOut>
-Scene with_light(Scene scene, const Plan& plan, const LeftOut& left_out) {
-  if (left_out(Effect::luminaires)) scene.luminaires.clear();
-  if (left_out(Effect::sun)) scene.sun.reset();
-  if (left_out(Effect::sky)) scene.sky.reset();
-  if (is_skipped_by_force(plan, Effect::textures)) {
-    for (Material& material : scene.materials) material.texture.reset();
+std::shared_ptr<const Scene> with_light(const std::shared_ptr<const Scene>& scene, const Plan& plan,
+                                        const LeftOut& left_out) {
+  const bool no_luminaires = left_out(Effect::luminaires) && !scene->luminaires.empty();
+  const bool no_sun = left_out(Effect::sun) && scene->sun;
+  const bool no_sky = left_out(Effect::sky) && scene->sky;
+  const bool no_textures = is_skipped_by_force(plan, Effect::textures);
+  const bool no_color = is_skipped_by_force(plan, Effect::colour);
+  if (!no_luminaires && !no_sun && !no_sky && !no_textures && !no_color) return scene;
+  Scene changed = *scene;
+  if (no_luminaires) changed.luminaires.clear();
+  if (no_sun) changed.sun.reset();
+  if (no_sky) changed.sky.reset();
+  if (no_textures) {
+    for (Material& material : changed.materials) material.texture.reset();
   }
-  return is_skipped_by_force(plan, Effect::colour) ? without_colour(std::move(scene)) : scene;
+  return std::make_shared<const Scene>(no_color ? without_colour(std::move(changed)) : std::move(changed));
 }
 
 }  // namespace
@@ -103,12 +111,12 @@ Reflections reflections_of(const Plan& plan) {
   return follows ? Reflections::followed : Reflections::kept;
 }
 
-Scene scene_for_sensors(Scene scene, const Plan& plan) {
-  return with_light(std::move(scene), plan, [&](Effect effect) { return is_skipped_by_force(plan, effect); });
+std::shared_ptr<const Scene> scene_for_sensors(const std::shared_ptr<const Scene>& scene, const Plan& plan) {
+  return with_light(scene, plan, [&](Effect effect) { return is_skipped_by_force(plan, effect); });
 }
 
-Scene scene_as_planned(Scene scene, const Plan& plan) {
-  return with_light(std::move(scene), plan, [&](Effect effect) { return !simulates(plan, effect); });
+std::shared_ptr<const Scene> scene_as_planned(const std::shared_ptr<const Scene>& scene, const Plan& plan) {
+  return with_light(scene, plan, [&](Effect effect) { return !simulates(plan, effect); });
 }
 
 Scene in_bands(Scene scene, const std::vector<Eigen::Index>& bands) {

@@ -5,6 +5,7 @@
 
 #include "visibility/occluder.h"
 
+#include <memory>
 #include <vector>
 
 namespace patchlight {
@@ -17,10 +18,12 @@ Reflections reflections_of(const Plan& plan);
 
 /// The scene with the lights that the plan simulates; without differences of colour when these are skipped by force:
 /// every spectrum is replaced by its luminance (light/photometry.h), the same in all bands.
-Scene scene_as_planned(Scene scene, const Plan& plan);
+/// Shares `scene` where that changes nothing.
+std::shared_ptr<const Scene> scene_as_planned(const std::shared_ptr<const Scene>& scene, const Plan& plan);
 
 /// The scene as sensors see it, which may stand where no patch is: only what is skipped by force gives no light.
-Scene scene_for_sensors(Scene scene, const Plan& plan);
+/// Shares `scene` as well.
+std::shared_ptr<const Scene> scene_for_sensors(const std::shared_ptr<const Scene>& scene, const Plan& plan);
 
 /// The scene with a single band, that one of its own.
 Scene in_one_band(Scene scene, Eigen::Index band);

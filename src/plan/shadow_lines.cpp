@@ -237,9 +237,10 @@ bool is_along_outline(const ContactLine& line, const std::vector<Point>& corners
 }  // namespace
 
 std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, const KeptSides& kept,
+                                                        const Coverings& coverings,
                                                         const std::vector<LightPlace>& lights) {
   const std::vector<Silhouette> edges = silhouettes(scene, lights);
-  const ShadowSearch search{scene, kept, Occluder(scene, Occluder::Blockers::opaque, find_coverings(scene, kept)),
+  const ShadowSearch search{scene, kept, Occluder(scene, Occluder::Blockers::opaque, coverings),
                             beside_edge * extent_of(scene), weld_distance(scene)};
   std::vector<std::vector<ShadowLine>> found(edges.size());
   parallel_for(edges.size(), [&](std::size_t k) { found[k] = search.lines_of(edges[k]); });

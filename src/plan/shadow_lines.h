@@ -4,6 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "scene/coverings.h"
 #include "scene/light_place.h"
 
 #include <vector>
@@ -16,6 +17,7 @@ namespace patchlight {
 /// these tell of several stretches: shorter ones than such a part of the edge may be missed. Lines end where others or
 /// the outline cut them. O(n log n) for n polygons.
 std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, const KeptSides& kept,
+                                                        const Coverings& coverings,
                                                         const std::vector<LightPlace>& lights);
 
 }  // namespace patchlight

@@ -90,7 +90,7 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
 
 Provenance provenance_of(const SolvedScene& self) {
   return {.command_line = self.command_line,
-          .exposure = exposure_of(*self.scene, self.simulation),
+          .exposure = exposure_of(self.simulation),
           .scene_hash = scene_hash(*self.scene),
           .changes = self.changes};
 }
@@ -105,12 +105,12 @@ py::bytes page_of_run(const SolvedScene& self) {
   std::string html;
   {
     const py::gil_scoped_release others;
-    const SolvedSurface surface = surface_of(*self.scene, self.simulation);
-    const Picture picture = take_picture(*self.scene, self.simulation, {.width = 640, .height = 480});
+    const SolvedSurface surface = surface_of(self.simulation);
+    const Picture picture = take_picture(self.simulation, {.width = 640, .height = 480});
     SensorView view;
     SensorFacts facts;
     if (!self.scene->sensors.empty()) {
-      view = read_sensors(*self.scene, self.simulation);
+      view = read_sensors(self.simulation);
       facts = sensor_facts(self.scene->sensors, view.readings, view.warnings);
     }
     const Report report = report_of(*self.scene, self.request, self.simulation, facts);
@@ -137,14 +137,14 @@ std::vector<std::string> shortcomings_of(const SolvedScene& self) {
 
 void write_run(const SolvedScene& self, const std::string& file) {
   const py::gil_scoped_release others;
-  write_result(file, surface_of(*self.scene, self.simulation), provenance_of(self));
+  write_result(file, surface_of(self.simulation), provenance_of(self));
 }
 
 py::dict sensors_of(const SolvedScene& self) {
   SensorView view;
   {
     const py::gil_scoped_release others;
-    view = read_sensors(*self.scene, self.simulation);
+    view = read_sensors(self.simulation);
   }
   const Readings& readings = view.readings;
   const Eigen::Index count = readings.irradiance.rows();

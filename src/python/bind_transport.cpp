@@ -8,13 +8,13 @@
 #include "cli/arguments.h"
 #include "cli/parse_value.h"
 #include "gather/sensor_places.h"
+#include "pipeline/world.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/interrupt_flag.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <limits>
 #include <memory>
@@ -28,19 +28,19 @@ namespace {
 
 // Form factors between the patches of a scene, and the equations that are solved with them: B = E + R F B.
 struct TransportProblem {
-  std::shared_ptr<const Scene> scene;
   PatchMesh mesh;
   RadiosityProblem problem;
   Plan plan;
-  std::shared_ptr<const Tracing> tracing;
+  std::shared_ptr<const World> world;
   std::shared_ptr<const RowTransport> transport;
 };
 
 // Per sensor of the scene (row) and patch the irradiance by a radiosity of 1 of that patch: its form factor with what
 // stands between, as sensors gather it. Not a number for sensors inside walls. Throws Cancelled.
 Field sensor_factors(const TransportProblem& problem, const Observer& observer) {
-  const Occluder& occluder = problem.tracing->all_faces(*problem.scene);
-  const std::vector<SensorPlace> places = place_sensors(*problem.scene, problem.plan.sides, occluder);
+  const Scene& scene = problem.world->scene();
+  const Occluder& occluder = problem.world->all_faces();
+  const std::vector<SensorPlace> places = place_sensors(scene, scene.sensors, problem.plan.sides, occluder);
   const auto patches = static_cast<Eigen::Index>(problem.mesh.size());
   std::vector<Sensor> sensors;
   for (const SensorPlace& place : places) sensors.push_back(place.sensor);
@@ -64,8 +64,7 @@ TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, co
   raw.assembly.close = false;
   std::erase(raw.effects.force, Effect::closure);
   FormFactors found = find_form_factors(*scene, raw, observer);
-  TransportProblem result{
-      .scene = scene, .mesh = found.mesh, .problem = {}, .plan = {}, .tracing = nullptr, .transport = nullptr};
+  TransportProblem result{.mesh = found.mesh, .problem = {}, .plan = {}, .world = nullptr, .transport = nullptr};
 
   // 2. What a run makes of materials and lamps with them
   const SolveWith take_problem = [&](const RowTransport& transport, const RadiosityProblem& problem,
@@ -87,10 +86,10 @@ TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, co
   kept.effects = request.effects;
   kept.assembly.storage = Storage::tiles;
   kept.effects.force.push_back(Effect::interreflection);
-  Simulation simulation = simulate(*scene, kept, observer, with);
+  Simulation simulation = simulate(scene, kept, observer, with);
   const bool closes = simulation.plan.assembly.close;
   result.plan = std::move(simulation.plan);
-  result.tracing = std::move(simulation.tracing);
+  result.world = std::move(simulation.world);
 
   // 3. The operator
   Eigen::VectorXd area = found.exchange.area;

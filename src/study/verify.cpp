@@ -239,12 +239,12 @@ std::vector<Eigen::Index> all_rows(const SolvedAndTraced& compared) {
 struct Tracer {
   const Scene& whole;
   const Simulation& simulation;
-  Scene scene;
+  std::shared_ptr<const Scene> scene;
   PathOptions options;
   const Observer& observer;
 
   PathEstimate trace(const auto& receivers) const {
-    return trace_irradiance(scene, simulation.plan.sides, receivers, options, observer);
+    return trace_irradiance(*scene, simulation.plan.sides, receivers, options, observer);
   }
 };
 
@@ -296,7 +296,7 @@ std::vector<std::string> names_of_sensors(const Scene& scene) {
 std::optional<VerifiedFamily> verify_sensors(Tracer tracer, const VerifyOptions& options) {
   const std::vector<Sensor> all = all_sensors(tracer.whole.sensors);
   if (all.empty()) return {};
-  const Readings readings = read_sensors(tracer.whole, tracer.simulation, tracer.observer).readings;
+  const Readings readings = read_sensors(tracer.simulation, tracer.observer).readings;
   Eigen::ArrayXd weights = Eigen::ArrayXd::Ones(static_cast<Eigen::Index>(all.size()));
   for (std::size_t k = 0; k < all.size(); ++k)
     if (is_inside_wall(readings, k)) weights[static_cast<Eigen::Index>(k)] = 0;
@@ -336,7 +336,7 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
   const bool follows_reflections = reflections_of(simulation.plan) == Reflections::followed;
   const Tracer tracer{scene,
                       simulation,
-                      scene_for_sensors(scene, simulation.plan),
+                      scene_for_sensors(std::make_shared<const Scene>(scene), simulation.plan),
                       {.paths = options.paths, .seed = seed_of_paths, .follows_reflections = follows_reflections},
                       observer};
   Verification result;
@@ -355,7 +355,7 @@ Verification compared(const Scene& scene, const Simulation& simulation, const Fi
   if (auto rooms = verify_rooms(tracer, bar, options)) result.families.push_back(std::move(*rooms));
   if (auto sensors = verify_sensors(tracer, options)) result.families.push_back(std::move(*sensors));
   const Spectrum mean = result.paths.irradiance.colwise().mean();
-  result.left_out = trace_left_out(tracer.scene, simulation.plan.sides, mean, options, follows_reflections, observer);
+  result.left_out = trace_left_out(*tracer.scene, simulation.plan.sides, mean, options, follows_reflections, observer);
   return judged(std::move(result));
 }
 

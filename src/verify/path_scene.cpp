@@ -8,10 +8,10 @@ namespace patchlight {
 
 PathScene::PathScene(const Scene& scene, const KeptSides& sides, Reflections reflections)
     : tracing_(scene, find_coverings(scene, sides), Occluder::Blockers::all, reflections),
-      faces_(tracing_.all_faces(scene)),
+      faces_(tracing_.all_faces()),
       surfaces_(surfaces_of(scene, sides, reflections)),
-      opaque_(tracing_.opaque_faces(scene)),
-      clear_(tracing_.clear_faces(scene)),
+      opaque_(tracing_.opaque_faces()),
+      clear_(tracing_.clear_faces()),
       bounds_(patchlight::bounds(scene)),
       polygons_(scene.polygons.size()),
       bands_(number_of_bands(scene)) {}

@@ -6,10 +6,10 @@
 #include "base/sampling.h"
 #include "lighting/lighting.h"
 #include "lighting/sky_openings.h"
+#include "pipeline/world.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "views/solved_light.h"
-#include "visibility/tracing.h"
 
 #include <string>
 
@@ -41,15 +41,12 @@ void require_memory_of(const PackedCharts& charts, const Simulation& simulation)
 
 }  // namespace
 
-Lightmap bake_lightmap(const Scene& scene, const Simulation& simulation, const LightmapOptions& options,
-                       const Observer& observer) {
-  PackedCharts charts = packed_charts(charts_of(scene, simulation.mesh), options.texel);
+Lightmap bake_lightmap(const Simulation& simulation, const LightmapOptions& options, const Observer& observer) {
+  PackedCharts charts = packed_charts(charts_of(simulation.world->scene(), simulation.mesh), options.texel);
   require_memory_of(charts, simulation);
-  const Scene lit = scene_for_sensors(scene, simulation.plan);
-  const Lighting lighting = lighting_of(lit, *simulation.tracing);
   BakeOptions baking{.seed = hash({simulation.plan.assembly.seed})};
   if (!simulates(simulation.plan, Effect::interreflection)) baking.hemisphere.most_bounces = 0;
-  return bake(solved_light(lit, simulation, lighting), sent_besides(simulation), std::move(charts), baking, observer);
+  return bake(solved_light(simulation), sent_besides(simulation), std::move(charts), baking, observer);
 }
 
 }  // namespace patchlight

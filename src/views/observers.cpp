@@ -2,11 +2,11 @@
 #include "patchlight/views/views.h"
 
 #include "light/photometry.h"
+#include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "render/glare.h"
 #include "render/lens.h"
 #include "views/luminaire_glare.h"
-#include "visibility/tracing.h"
 
 #include <cmath>
 #include <numbers>
@@ -31,11 +31,12 @@ struct View {
   std::vector<GlareSource> sources;
 };
 
-View view_of(const Scene& scene, const Simulation& simulation, Camera camera, const Observer& observer) {
+View view_of(const Simulation& simulation, Camera camera, const Observer& observer) {
+  const Scene& scene = simulation.world->scene();
   camera.projection = Projection::angular;
   camera.vertical_field_of_view = 180;
   const Picture picture =
-      take_picture(scene, simulation, {.camera = camera, .width = view_edge, .height = view_edge}, observer);
+      take_picture(simulation, {.camera = camera, .width = view_edge, .height = view_edge}, observer);
   const Vector up = picture_up(camera, scene.up, scene.north);
   const Lens lens(camera, up, view_edge, view_edge);
   const Vector forward = (camera.target - camera.eye).normalized();
@@ -71,9 +72,8 @@ View view_of(const Scene& scene, const Simulation& simulation, Camera camera, co
     else
       view.background += seen.luminance * seen.direction.dot(forward) * seen.solid_angle / std::numbers::pi;
   }
-  const Scene lit = scene_for_sensors(scene, simulation.plan);
   for (const GlareSource& source :
-       luminaire_glare(lit, simulation.tracing->all_faces(scene), camera.eye, forward, upward))
+       luminaire_glare(simulation.world->sensor_scene(), simulation.world->all_faces(), camera.eye, forward, upward))
     view.sources.push_back(source);
   return view;
 }
@@ -91,13 +91,12 @@ std::vector<Sensor> sensors_of(const Camera& camera, const Scene& scene) {
 
 }  // namespace
 
-std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation& simulation,
-                                            const std::vector<Camera>& cameras, const Observer& observer) {
+std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
+                                            const Observer& observer) {
+  const Scene& scene = simulation.world->scene();
   std::vector<ObserverReading> all;
   for (const Camera& camera : cameras) {
-    Scene at = scene;
-    at.sensors = {{camera.name, sensors_of(camera, scene)}};
-    const Readings readings = read_sensors(at, simulation, observer).readings;
+    const Readings readings = read_sensors(simulation, {{camera.name, sensors_of(camera, scene)}}, observer).readings;
     const auto illuminance = [&](std::size_t sensor) {
       return std::numbers::pi *
              luminance(Spectrum(readings.irradiance.row(static_cast<Eigen::Index>(sensor)) / std::numbers::pi),
@@ -106,7 +105,7 @@ std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation
     ObserverReading reading{.name = camera.name, .vertical_illuminance = illuminance(0)};
     for (std::size_t k = 1; k <= directions_around; ++k)
       reading.cylindrical_illuminance += illuminance(k) / directions_around;
-    const View view = view_of(scene, simulation, camera, observer);
+    const View view = view_of(simulation, camera, observer);
     reading.background_luminance = view.background;
     for (const GlareSource& source : view.sources) reading.glare_solid_angle += source.solid_angle;
     reading.unified_glare_rating = unified_glare_rating(view.sources, view.background);

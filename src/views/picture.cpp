@@ -5,6 +5,7 @@
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky_openings.h"
+#include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "render/final_gather.h"
 #include "render/inside_camera.h"
@@ -14,7 +15,6 @@
 #include "views/solved_light.h"
 #include "views/surroundings.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,29 +108,28 @@ Field display_radiance(const Simulation& simulation) {
   return radiosity / std::numbers::pi;  // L = B / pi
 }
 
-double exposure_of(const Scene& scene, const Simulation& simulation) {
+double exposure_of(const Simulation& simulation) {
   const Field radiance = display_radiance(simulation);
   const Eigen::VectorXd& area = simulation.problem.area;
-  const Bands bands = bands_of(scene);
+  const Bands bands = bands_of(simulation.world->scene());
   if (simulation.enclosed.size() == 0) return exposure_for(radiance, area, bands);
   const Eigen::VectorXd inside = area.cwiseProduct(simulation.enclosed);
   const bool is_lit = ((radiance.rowwise().maxCoeff() > 0) && (inside.array() > 0)).any();
   return exposure_for(radiance, is_lit ? inside : area, bands);
 }
 
-Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options,
-                     const Observer& observer) {
-  const Occluder& occluder = simulation.tracing->all_faces(scene);
+Picture take_picture(const Simulation& simulation, const PictureOptions& options, const Observer& observer) {
+  const Scene& scene = simulation.world->scene();
+  const Occluder& occluder = simulation.world->all_faces();
   const Camera camera = options.camera ? *options.camera : view_of_brightest_room(scene, simulation, occluder);
   const Vector up = picture_up(camera, scene.up, scene.north);
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
-  const Scene seen = scene_for_sensors(scene, simulation.plan);
+  const Scene& seen = simulation.world->sensor_scene();
   const auto surroundings = surroundings_of(seen);
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
-    const Lighting lighting = lighting_of(seen, *simulation.tracing);
-    const SolvedLight light = solved_light(seen, simulation, lighting);
+    const SolvedLight light = solved_light(simulation);
     const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
                          {.width = options.width,

@@ -9,8 +9,8 @@
 #include "lighting/mirrored_irradiance.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/radiosity_errors.h"
+#include "pipeline/world.h"
 #include "plan/planned_scene.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,13 +79,15 @@ void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
 
 // What sensors see in mirrors and clear faces: lamps, luminaires, sun and sky over each chain of mirrors, and all other
 // light of patches by rays. Nothing where reflections are not followed.
-std::optional<GatheredIrradiance> seen_in_mirrors(const Scene& scene, const Simulation& simulation, Field sent,
+std::optional<GatheredIrradiance> seen_in_mirrors(const Simulation& simulation, Field sent,
                                                   const std::vector<Sensor>& sensors, const Observer& observer) {
-  const Lighting lighting = lighting_of(scene, *simulation.tracing);
+  const World& world = *simulation.world;
+  const Scene& scene = world.sensor_scene();
+  const Lighting& lighting = world.sensor_lighting();
   if (!lighting.mirrors) return {};
   const PatchMesh& mesh = simulation.mesh;
   std::vector<LampFace> lamps;
-  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem, *simulation.tracing)) {
+  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem, world.tracing())) {
     const auto faces = lamp_faces(scene, polygon, side);
     lamps.insert(lamps.end(), faces.begin(), faces.end());
     const auto [begin, end] = mesh.patches_on(polygon, side);
@@ -94,26 +96,25 @@ std::optional<GatheredIrradiance> seen_in_mirrors(const Scene& scene, const Simu
   const std::uint64_t seed = simulation.plan.assembly.seed;
   std::vector<SurfacePoint> points;
   for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-  GatheredIrradiance found = gather_mirrored(mesh, sent, lighting.mirrors->view, simulation.tracing->all_faces(scene),
-                                             sensors, {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
+  GatheredIrradiance found = gather_mirrored(mesh, sent, lighting.mirrors->view, world.all_faces(), sensors,
+                                             {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
   const DirectIrradiance direct = mirrored_irradiance(lighting, lamps, points, {.seed = seed}, observer);
   found.irradiance += direct.irradiance;
   found.errors.rays = (found.errors.rays.square() + direct.standard_error.square()).sqrt();
   return found;
 }
 
-Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, const Simulation& simulation,
-                     const Observer& observer) {
-  const Scene scene = scene_for_sensors(whole, simulation.plan);
+Readings readings_at(std::span<const SensorPlace> places, const Simulation& simulation, const Observer& observer) {
+  const World& world = *simulation.world;
+  const Scene& scene = world.sensor_scene();
   // Without interreflection sensors see what lamps send, and nothing that is reflected.
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.assembly.seed;
-  const Tracing& tracing = *simulation.tracing;
-  const std::optional<LightPaths> coloured = coloured_paths(scene, tracing);
+  const std::optional<LightPaths> coloured = coloured_paths(scene, world.tracing());
   GatheredIrradiance gathered = gather_irradiance(
-      simulation.mesh, sent, tracing.all_faces(whole), sensors,
+      simulation.mesh, sent, world.all_faces(), sensors,
       {.seed = seed, .errors = radiosity_errors(simulation), .coloured = coloured ? &*coloured : nullptr}, observer);
   SensorErrors& errors = gathered.errors;
   // Light that is still under way, by how much is not known.
@@ -122,11 +123,11 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
   if (has_point_or_daylight(scene)) {
     std::vector<SurfacePoint> points;
     for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-    const DirectIrradiance direct = direct_irradiance(lighting_of(scene, tracing), points, {.seed = seed}, observer);
+    const DirectIrradiance direct = direct_irradiance(world.sensor_lighting(), points, {.seed = seed}, observer);
     gathered.irradiance += direct.irradiance;
     errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
   }
-  if (const auto mirrored = seen_in_mirrors(scene, simulation, sent, sensors, observer)) add(gathered, *mirrored);
+  if (const auto mirrored = seen_in_mirrors(simulation, sent, sensors, observer)) add(gathered, *mirrored);
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),
                        .standard_error = at_places(errors.total(), places),
                        .errors = {.rays = at_places(errors.rays, places),
@@ -144,13 +145,20 @@ Readings readings_at(std::span<const SensorPlace> places, const Scene& whole, co
 
 bool has_daylight_factors(const Scene& scene) { return only_overcast_sky(scene).has_value(); }
 
-SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
+SensorView read_sensors(const Simulation& simulation, const Observer& observer) {
+  return read_sensors(simulation, simulation.world->scene().sensors, observer);
+}
+
+SensorView read_sensors(const Simulation& simulation, const std::vector<SensorGroup>& sensors,
+                        const Observer& observer) {
+  const Scene& scene = simulation.world->scene();
   const std::vector<SensorPlace> places =
-      place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
-  std::vector<std::string> warnings = doubtful_sensors(scene, places);
-  for (std::string& warning : sensors_far_off(scene)) warnings.push_back(std::move(warning));
-  for (std::string& warning : sensors_close_to_pictures(scene, simulation.mesh)) warnings.push_back(std::move(warning));
-  return {readings_at(places, scene, simulation, observer), std::move(warnings)};
+      place_sensors(scene, sensors, simulation.plan.sides, simulation.world->all_faces());
+  std::vector<std::string> warnings = doubtful_sensors(sensors, places);
+  for (std::string& warning : sensors_far_off(scene, sensors)) warnings.push_back(std::move(warning));
+  for (std::string& warning : sensors_close_to_pictures(scene, sensors, simulation.mesh))
+    warnings.push_back(std::move(warning));
+  return {readings_at(places, simulation, observer), std::move(warnings)};
 }
 
 }  // namespace patchlight

@@ -5,8 +5,8 @@
 #include "light/photometry.h"
 #include "lighting/lamp_faces.h"
 #include "pipeline/lamps_apart.h"
+#include "pipeline/world.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <algorithm>
 #include <numbers>
@@ -69,7 +69,8 @@ PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) 
 
 }  // namespace
 
-SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const Lighting& lighting) {
+SolvedLight solved_light(const Simulation& simulation) {
+  const Scene& scene = simulation.world->sensor_scene();
   const RadiosityProblem& problem = simulation.problem;
   PictureLamps lamps = lamps_of_picture(scene, simulation);
   const Field sent = simulates(simulation.plan, Effect::interreflection)
@@ -80,8 +81,8 @@ SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const
   for (std::size_t band = 0; band < bands.size(); ++band)
     weights[static_cast<Eigen::Index>(band)] = luminous_efficacy * bands[band].luminous_weight;
   return {.mesh = simulation.mesh,
-          .occluder = simulation.tracing->all_faces(scene),
-          .lights = {std::move(lamps.faces), lighting},
+          .occluder = simulation.world->all_faces(),
+          .lights = {std::move(lamps.faces), simulation.world->sensor_lighting()},
           .exitance = problem.exitance,
           .reflected = sent - lamps.exitance,
           .reflectance = problem.scattering.reflectance,

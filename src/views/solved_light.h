@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// What a gather at points needs of a solved scene: the brightest lamps apart from what patches reflect. Keeps
-/// references to all three, which must outlive it.
-SolvedLight solved_light(const Scene& scene, const Simulation& simulation, const Lighting& lighting);
+/// What a gather at points needs of a solved scene: the brightest lamps apart from what patches reflect. Keeps a
+/// reference to the simulation, which must outlive it.
+SolvedLight solved_light(const Simulation& simulation);
 
 }  // namespace patchlight

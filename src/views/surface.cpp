@@ -1,21 +1,20 @@
 #include "patchlight/views/views.h"
 
+#include "pipeline/world.h"
 #include "render/ambient_occlusion.h"
 #include "render/smooth.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <numbers>
 
 namespace patchlight {
 
-SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
-                         const std::optional<double>& ambient_distance) {
+SolvedSurface surface_of(const Simulation& simulation, const std::optional<double>& ambient_distance) {
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
-  const Occluder& occluder = simulation.tracing->all_faces(scene);
+  const Occluder& occluder = simulation.world->all_faces();
   const PatchMesh& mesh = simulation.mesh;
   const Eigen::VectorXd& area = simulation.problem.area;
-  SolvedSurface surface{scene, simulation, smooth(mesh, radiance, area, occluder).at_vertices};
+  SolvedSurface surface{simulation.world->scene(), simulation, smooth(mesh, radiance, area, occluder).at_vertices};
   if (ambient_distance) {
     surface.ambient_occlusion = ambient_occlusion(mesh, occluder, *ambient_distance);
     surface.ambient_occlusion_at_vertices =

@@ -1,7 +1,7 @@
 #include "views/surroundings.h"
 
 #include "lighting/sky.h"
-#include "plan/planned_scene.h"
+#include "pipeline/world.h"
 
 #include <cmath>
 #include <numbers>
@@ -22,8 +22,8 @@ std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene) {
   };
 }
 
-std::function<Spectrum(const Vector&)> sky_of(const Scene& scene, const Plan& plan) {
-  Scene seen = scene_for_sensors(scene, plan);
+std::function<Spectrum(const Vector&)> sky_of(const Simulation& simulation) {
+  Scene seen = simulation.world->sensor_scene();
   seen.sun.reset();
   return surroundings_of(seen);
 }

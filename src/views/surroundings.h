@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/plan/plan.h"
+#include "patchlight/simulate.h"
 #include "patchlight/scene/scene.h"
 
 #include <functional>
@@ -11,6 +11,6 @@ namespace patchlight {
 std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene);
 
 /// That of sky and ground alone, as sensors of a solved scene see them: as far as the plan has them.
-std::function<Spectrum(const Vector&)> sky_of(const Scene& scene, const Plan& plan);
+std::function<Spectrum(const Vector&)> sky_of(const Simulation& simulation);
 
 }  // namespace patchlight

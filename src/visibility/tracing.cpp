@@ -33,7 +33,8 @@ struct Tracing::Later {
 };
 
 Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers between_patches, Reflections reflections)
-    : coverings_(std::move(coverings)),
+    : scene_(scene),
+      coverings_(std::move(coverings)),
       kind_(between_patches),
       has_openings_(has_openings(scene)),
       has_specular_faces_(has_openings_ || has_mirrors(scene)),
@@ -43,30 +44,30 @@ Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers bet
 
 Tracing::~Tracing() = default;
 
-const Occluder& Tracing::all_faces(const Scene& scene) const {
+const Occluder& Tracing::all_faces() const {
   std::call_once(later_->all_once, [&] {
     const auto all = Occluder::Blockers::all;
-    later_->all = kind_ == all ? between_patches_ : std::make_shared<const Occluder>(scene, all, *between_patches_);
+    later_->all = kind_ == all ? between_patches_ : std::make_shared<const Occluder>(scene_, all, *between_patches_);
   });
   return *later_->all;
 }
 
-Shared Tracing::opaque_faces(const Scene& scene) const {
+Shared Tracing::opaque_faces() const {
   std::call_once(later_->opaque_once, [&] {
     if (has_openings_) {
-      later_->opaque = std::make_shared<const Occluder>(scene, Occluder::Blockers::opaque, coverings_);
+      later_->opaque = std::make_shared<const Occluder>(scene_, Occluder::Blockers::opaque, coverings_);
     } else {
-      all_faces(scene);
+      all_faces();
       later_->opaque = later_->all;
     }
   });
   return later_->opaque;
 }
 
-Shared Tracing::clear_faces(const Scene& scene) const {
+Shared Tracing::clear_faces() const {
   if (!has_openings_) return nullptr;
   std::call_once(later_->clear_once,
-                 [&] { later_->clear = std::make_shared<const Occluder>(scene, Occluder::Blockers::clear); });
+                 [&] { later_->clear = std::make_shared<const Occluder>(scene_, Occluder::Blockers::clear); });
   return later_->clear;
 }
 

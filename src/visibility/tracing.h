@@ -7,8 +7,8 @@
 namespace patchlight {
 
 /// What the rays of a run need, made once: which polygons lie over which, and an occluder for each set of blockers.
-/// That between patches is made at once, the others when they are first asked for. `scene` is always that of the
-/// constructor, of which only the polygons and what they let through count. Safe to use from several threads.
+/// That between patches is made at once, the others when they are first asked for. Of the scene only the polygons and
+/// what they let through count; it must outlive the object. Safe to use from several threads.
 class Tracing {
  public:
   explicit Tracing(const Scene& scene, Coverings coverings = {},
@@ -28,17 +28,18 @@ class Tracing {
   const Occluder& between_patches() const { return *between_patches_; }
 
   /// For points that may lie anywhere: every polygon blocks.
-  const Occluder& all_faces(const Scene& scene) const;
+  const Occluder& all_faces() const;
 
   /// Every polygon that lets no light through blocks, and the others count as not there.
-  std::shared_ptr<const Occluder> opaque_faces(const Scene& scene) const;
+  std::shared_ptr<const Occluder> opaque_faces() const;
 
   /// Every clear polygon blocks, and the others count as not there. Null where there are none.
-  std::shared_ptr<const Occluder> clear_faces(const Scene& scene) const;
+  std::shared_ptr<const Occluder> clear_faces() const;
 
  private:
   struct Later;
 
+  const Scene& scene_;
   Coverings coverings_;
   Occluder::Blockers kind_;
   bool has_openings_;

@@ -30,7 +30,7 @@ Eigen::ArrayXd irradiance_of(const Lightmap& map) { return (map.direct + map.ind
 // H = E / (1 - rho) in a closed room of one material, and the radiance is that over pi; around charts as well.
 TEST(Lightmap, OfAFurnaceIsTheSameEverywhere) {
   const Scene scene = with_box(empty_scene({grey(0.5, 3)}), Point(0, 0, 0), Point(2, 1, 1), true);
-  const Lightmap map = bake_lightmap(scene, solved_with_edge(scene, 0.125), {.texel = 0.25});
+  const Lightmap map = bake_lightmap(solved_with_edge(scene, 0.125), {.texel = 0.25});
   ASSERT_EQ(map.charts.size(), 6U);
   for (const LightmapChart& chart : map.charts) {
     for (int y = chart.top - 2; y < chart.top + chart.height + 2; ++y) {
@@ -52,7 +52,7 @@ TEST(Lightmap, HasTheFluxOfTheSolution) {
   scene = with_quad(std::move(scene),
                     {Point(0.75, 0.5, 0.75), Point(0.75, 1, 0.75), Point(1.25, 1, 0.75), Point(1.25, 0.5, 0.75)}, 1);
   const Simulation simulation = solved_with_edge(scene, 0.0625);
-  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.03125});
+  const Lightmap map = bake_lightmap(simulation, {.texel = 0.03125});
   ASSERT_EQ(map.texel, 0.03125);
   const Eigen::ArrayXd irradiance = irradiance_of(map);
   std::map<PatchIndex, std::pair<double, int>> sums;
@@ -129,7 +129,7 @@ double bar_at_seam(const Simulation& simulation) {
 TEST(Lightmap, HasNoSeamBetweenCoplanarCharts) {
   const Scene scene = room_with_two_floors();
   const Simulation simulation = solved_with_edge(scene, 0.25, true);
-  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.1});
+  const Lightmap map = bake_lightmap(simulation, {.texel = 0.1});
   const LightmapChart left = chart_on_floor(map, simulation.mesh, 0), right = chart_on_floor(map, simulation.mesh, 2);
   double mean_square = 0, worst = 0;
   constexpr int places = 200;
@@ -151,7 +151,7 @@ TEST(Lightmap, LeaksNothingUnderAWallOnASeam) {
   scene =
       with_quad(std::move(scene), {Point(seam, 0, 0), Point(seam, 3, 0), Point(seam, 3, 2.5), Point(seam, 0, 2.5)}, 0);
   const Simulation simulation = solved_with_edge(scene, 0.25);
-  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.1});
+  const Lightmap map = bake_lightmap(simulation, {.texel = 0.1});
   const LightmapChart dark = chart_on_floor(map, simulation.mesh, 0), lit = chart_on_floor(map, simulation.mesh, 2);
   const Point point(seam, 1.5, 0);
   EXPECT_GT(interpolated(map, lit, point), 0.1);
@@ -165,7 +165,7 @@ TEST(Lightmap, IsNotDarkBesideAWallInTheMiddleOfAChart) {
   request.mesh.max_edge = 0.25;
   request.mesh.contact_lines = false;
   const Simulation simulation = simulate(scene, request);
-  const Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.05});
+  const Lightmap map = bake_lightmap(simulation, {.texel = 0.05});
   const LightmapChart floor = chart_on_floor(map, simulation.mesh, 0);
   for (const double y : {0.8, 1.2, 1.8, 2.2}) {
     for (const auto& [foot, away] : {std::pair{1.98, 1.88}, std::pair{2.17, 2.27}}) {
@@ -182,7 +182,7 @@ TEST(Lightmap, HasTheSameBitsForAnyNumberOfThreads) {
   std::vector<Lightmap> maps;
   for (const int threads : {1, 3}) {
     const ThreadLimit limit(threads);
-    maps.push_back(bake_lightmap(scene, simulation, {.texel = 0.25}));
+    maps.push_back(bake_lightmap(simulation, {.texel = 0.25}));
   }
   EXPECT_EQ(maps[0].patch, maps[1].patch);
   EXPECT_TRUE((maps[0].direct == maps[1].direct).all());
@@ -194,7 +194,7 @@ TEST(Lightmap, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(Lightmap, OfASliverIsNotBlack) {
   Scene scene = with_box(empty_scene({grey(0.5, 3)}), Point(0, 0, 0), Point(2, 1, 1), true);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0.3), Point(1.5, 0.51, 0.6), false);
-  const Lightmap map = bake_lightmap(scene, solved_with_edge(scene, 0.25), {.texel = 0.25});
+  const Lightmap map = bake_lightmap(solved_with_edge(scene, 0.25), {.texel = 0.25});
   EXPECT_EQ(map.charts.size(), 12U);
   for (const LightmapChart& chart : map.charts) {
     for (int y = chart.top; y < chart.top + chart.height; ++y) {

@@ -43,7 +43,7 @@ TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
   }
   const Camera camera{Point(0.5, 2, 1.2), Point(5, 2, 1.2), 50, "desk"};
   const Simulation simulation = solved(scene, 2000);
-  const ObserverReading found = read_observers(scene, simulation, {camera})[0];
+  const ObserverReading found = read_observers(simulation, {camera})[0];
 
   double sum = 0, from_squares = 0;
   for (const Quad& square : squares) {
@@ -70,7 +70,7 @@ TEST(Observers, HaveTheCylindricalIlluminanceOfAPointOfLight) {
   lamp.light = PointLight{Spectrum::Constant(1, 100 / luminous_efficacy)};
   scene.luminaires = {lamp};
   const Camera camera{Point(0, 0, 1.2), Point(1.1, 2.3, 1.2), 50, "desk"};
-  const ObserverReading found = read_observers(scene, solved(scene, 100), {camera})[0];
+  const ObserverReading found = read_observers(solved(scene, 100), {camera})[0];
   const Vector way = lamp.position - camera.eye;
   const double vertical = 100 * std::hypot(way.x(), way.y()) / std::pow(way.norm(), 3);
   EXPECT_NEAR(found.vertical_illuminance, vertical, 1e-6 * vertical);
@@ -110,7 +110,7 @@ TEST(Observers, SeeLuminairesAsTheirLuminousOpenings) {
     sum += std::pow(intensity / area / p, 2) * area / (distance * distance);
     straight += intensity * way.x() / std::pow(distance, 3);
   }
-  const ObserverReading found = read_observers(scene, solved(scene, 2000), {camera})[0];
+  const ObserverReading found = read_observers(solved(scene, 2000), {camera})[0];
   const double background = (found.vertical_illuminance - straight) / pi;
   EXPECT_NEAR(found.background_luminance, background, 0.02 * background);
   EXPECT_NEAR(*found.unified_glare_rating, 8 * std::log10(0.25 / background * sum), 0.1);
@@ -118,7 +118,7 @@ TEST(Observers, SeeLuminairesAsTheirLuminousOpenings) {
   // Behind a board before one of them there is the other alone.
   Scene behind = scene;
   behind = with_quad(std::move(behind), {Point(2, 1, 2.9), Point(2, 3, 2.9), Point(3.6, 3, 2.9), Point(3.6, 1, 2.9)});
-  const ObserverReading half = read_observers(behind, solved(behind, 2000), {camera})[0];
+  const ObserverReading half = read_observers(solved(behind, 2000), {camera})[0];
   EXPECT_NEAR(
       half.glare_solid_angle,
       found.glare_solid_angle * 0.36 * 1.795 / std::pow(std::hypot(4.2, 1.795), 3) /
@@ -134,7 +134,7 @@ TEST(DefaultView, StandsInsideTheRoomWithMostLight) {
     const Point low(lamp_x, 1.2, 2.2);
     scene = with_quad(std::move(scene),
                       {low, low + Vector(0, 0.6, 0), low + Vector(0.6, 0.6, 0), low + Vector(0.6, 0, 0)}, 1);
-    const Picture picture = take_picture(scene, solved(scene, 300), {.width = 16, .height = 16});
+    const Picture picture = take_picture(solved(scene, 300), {.width = 16, .height = 16});
     const Box room = lamp_x < 5 ? Box(Point(0, 0, 0), Point(4, 3, 2.5)) : Box(Point(6, 0, 0), Point(12, 5, 3));
     EXPECT_TRUE(room.contains(picture.camera.eye)) << picture.camera.eye.transpose();
     EXPECT_GT(picture.radiance.pixels.minCoeff(), 0) << "every pixel shows a lit surface";

@@ -50,7 +50,7 @@ TEST(FinalPicture, OfAFurnaceHasTheSameRadianceEverywhere) {
   // B = E + rho B: B = E / (1 - rho) in a closed room of one material.
   const Scene scene = with_box(empty_scene({grey(0.5, 3)}), Point(0, 0, 0), Point(2, 1, 1), true);
   const Picture picture =
-      take_picture(scene, solved(scene, 600), final_options({Point(0.2, 0.4, 0.3), Point(2, 0.6, 0.6), 80}, 40));
+      take_picture(solved(scene, 600), final_options({Point(0.2, 0.4, 0.3), Point(2, 0.6, 0.6), 80}, 40));
   const Eigen::ArrayXd values = luminances(picture).array();
   const double expected = luminous_efficacy * 6 / pi;
   // Half a per cent for the solution's form factors.
@@ -60,9 +60,9 @@ TEST(FinalPicture, OfAFurnaceHasTheSameRadianceEverywhere) {
 
 TEST(FinalPicture, IsLinearInTheEmission) {
   Scene scene = test_room(0.6);
-  const Picture first = take_picture(scene, solved(scene, 500), final_options(into_room(), 24));
+  const Picture first = take_picture(solved(scene, 500), final_options(into_room(), 24));
   for (Material& material : scene.materials) material.exitance *= 4;
-  const Picture second = take_picture(scene, solved(scene, 500), final_options(into_room(), 24));
+  const Picture second = take_picture(solved(scene, 500), final_options(into_room(), 24));
   // A power of two changes no rounding of the picture; the solver stops by relative errors.
   EXPECT_LT((second.radiance.pixels - 4 * first.radiance.pixels).abs().maxCoeff(),
             1e-5 * second.radiance.pixels.maxCoeff());
@@ -73,7 +73,7 @@ TEST(FinalPicture, HasTheSameBitsOnOneThreadAndOnTwo) {
   const Simulation simulation = solved(scene, 400);
   const auto on = [&](int threads) {
     const ThreadLimit limit(threads);
-    return take_picture(scene, simulation, final_options(into_room(), 40));
+    return take_picture(simulation, final_options(into_room(), 40));
   };
   const Picture one = on(1);
   const Picture two = on(2);
@@ -84,9 +84,9 @@ TEST(FinalPicture, HasTheSameBitsOnOneThreadAndOnTwo) {
 TEST(FinalPicture, HidesTheMesh) {
   const Scene scene = test_room(0.5);
   const Eigen::ArrayXd coarse =
-      luminances(take_picture(scene, solved(scene, 400), final_options(into_room(), 64, 0.01))).array();
+      luminances(take_picture(solved(scene, 400), final_options(into_room(), 64, 0.01))).array();
   const Eigen::ArrayXd fine =
-      luminances(take_picture(scene, solved(scene, 6000), final_options(into_room(), 64, 0.01))).array();
+      luminances(take_picture(solved(scene, 6000), final_options(into_room(), 64, 0.01))).array();
   // Lamps are so much brighter than all else that they would decide the mean.
   const double mean = fine.min(2 * fine.mean()).mean();
   EXPECT_LT(std::sqrt((coarse - fine).square().mean()), 0.02 * mean);
@@ -100,7 +100,7 @@ TEST(FinalPicture, ErrorsCoverWhatSeedsDiffer) {
   Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(32 * 32);
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     simulation.plan.assembly.seed = seed;
-    pictures.push_back(take_picture(scene, simulation, final_options(into_room(), 32)));
+    pictures.push_back(take_picture(simulation, final_options(into_room(), 32)));
     mean += luminances(pictures.back()).array() / seeds;
   }
   double beyond = 0;
@@ -117,10 +117,10 @@ TEST(FinalPicture, OfAFisheyeIntegratesToTheIrradianceOfASensor) {
   const Sensor sensor{Point(2, 1.5, 0.2), Vector::UnitZ()};
   scene.sensors = {{"up", {sensor}}};
   const Simulation simulation = solved(scene, 2000);
-  const double expected = read_sensors(scene, simulation).readings.irradiance(0, 0);
+  const double expected = read_sensors(simulation).readings.irradiance(0, 0);
   Camera camera{sensor.point, sensor.point + sensor.normal, 180};
   camera.projection = Projection::hemispherical;
-  const Picture picture = take_picture(scene, simulation, final_options(camera, 200));
+  const Picture picture = take_picture(simulation, final_options(camera, 200));
   // E = int L cos dw = pi times the mean over the disc, whose area is pi / 4 of the picture's.
   const double found = picture.radiance.pixels.col(0).mean() * 4;
   EXPECT_NEAR(found, expected, 0.01 * expected);
@@ -137,8 +137,8 @@ TEST(FinalPicture, OfAMirrorIsThatFromTheMirroredEye) {
   const Simulation simulation = solved(scene, 800, Storage::rays);
   constexpr int edge = 48;
   const Point at(4, 1.5, 1.3);
-  const Picture mirror = take_picture(scene, simulation, final_options({Point(2.5, 1.5, 1.3), at, 40}, edge));
-  const Picture behind = take_picture(scene, simulation, final_options({Point(5.5, 1.5, 1.3), at, 40}, edge));
+  const Picture mirror = take_picture(simulation, final_options({Point(2.5, 1.5, 1.3), at, 40}, edge));
+  const Picture behind = take_picture(simulation, final_options({Point(5.5, 1.5, 1.3), at, 40}, edge));
   const Eigen::VectorXd in_mirror = luminances(mirror);
   const Eigen::VectorXd straight = luminances(behind);
   double square = 0, errors = 0;
@@ -163,7 +163,7 @@ TEST(FinalPicture, AgreesWithPathTracing) {
   Camera camera{Point(1.2, 0.3, 0.05), Point(1.2, 0.3, 0)};
   camera.projection = Projection::orthographic;
   camera.height = 0.4;
-  const Picture picture = take_picture(scene, simulation, final_options(camera, 32, 0.005));
+  const Picture picture = take_picture(simulation, final_options(camera, 32, 0.005));
   const PathReceiver receiver{square, 0, Side::front};
   const PathEstimate paths = trace_irradiance(scene, simulation.plan.sides, {&receiver, 1}, {.paths = 1 << 18});
   const double expected = 0.5 / pi * paths.irradiance(0, 0);
@@ -218,7 +218,7 @@ TEST(FinalPicture, OfManyLampsHasTheirClosedForm) {
     lamps.push_back({corner, corner + Vector(0, 0.3, 0), corner + Vector(0.4, 0.3, 0), corner + Vector(0.4, 0, 0)});
     scene = with_quad(std::move(scene), lamps.back(), 1);
   }
-  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
+  const Picture picture = take_picture(solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
   expect_irradiance(picture, [&](const Point& place) {
     double sum = 0;
     for (const Quad& lamp : lamps) sum += 10 * point_to_polygon(place, Vector::UnitZ(), lamp);
@@ -234,7 +234,7 @@ TEST(FinalPicture, OfManyLuminairesHasTheirClosedForm) {
     luminaire.light = PointLight{Spectrum::Constant(1, 1 + k)};
     scene.luminaires.push_back(luminaire);
   }
-  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
+  const Picture picture = take_picture(solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
   // I cos / r^2 of each
   expect_irradiance(picture, [&](const Point& place) {
     double sum = 0;
@@ -252,7 +252,7 @@ TEST(FinalPicture, ShowsShadowsOfTheSunAtTheirPlaces) {
                     {Point(-0.5, -0.5, 1), Point(0.5, -0.5, 1), Point(0.5, 0.5, 1), Point(-0.5, 0.5, 1)}, 2);
   const Vector to_sun = Vector(1, 0.5, 2).normalized();
   scene.sun = Sun{to_sun, Spectrum::Constant(1, 40)};
-  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({-0.4, 0, 0}, 1.6), 80));
+  const Picture picture = take_picture(solved(scene, 300), final_options(above_floor({-0.4, 0, 0}, 1.6), 80));
   const double step = 1.6 / 80;
   for (int y = 0; y < 80; ++y) {
     for (int x = 0; x < 80; ++x) {
@@ -287,7 +287,7 @@ TEST(FinalPicture, OfASkyThroughAHoleHasItsClosedForm) {
   Sky sky;
   sky.horizontal_irradiance = Spectrum::Constant(1, 50);
   scene.sky = sky;
-  const Picture picture = take_picture(scene, solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 2), 48));
+  const Picture picture = take_picture(solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 2), 48));
   // A uniform sky of radiance L gives pi L F, and 50 W/m^2 = pi L.
   expect_irradiance(picture, [&](const Point& place) { return 50 * point_to_polygon(place, Vector::UnitZ(), hole); });
 }
@@ -300,7 +300,7 @@ TEST(FinalPicture, OfAnOfficeByDayAgreesWithPathTracing) {
   const Simulation simulation = solved(scene, 4000);
   for (const Point& middle : {Point(1.5, 0.8, 0), Point(2.9, 2.5, 0), Point(2, 4.5, 0)}) {
     constexpr int pieces = 4;
-    const Picture picture = take_picture(scene, simulation, final_options(above_floor(middle, 0.4), 32, 0.01));
+    const Picture picture = take_picture(simulation, final_options(above_floor(middle, 0.4), 32, 0.01));
     std::vector<PathReceiver> receivers;
     for (int k = 0; k < pieces * pieces; ++k) {
       const Point low = middle + Vector(-0.2 + 0.1 * (k % pieces), 0.1 - 0.1 * (k / pieces), 0);
@@ -333,10 +333,10 @@ TEST(FinalPicture, OfAFisheyeByDayIntegratesToTheIrradianceOfASensor) {
   scene.sensors = {{"to the pane", {sensor}}};
   scene.sun.reset();  // its disc is smaller than a pixel
   const Simulation simulation = solved(scene, 1500);
-  const double expected = read_sensors(scene, simulation).readings.irradiance(0, 0);
+  const double expected = read_sensors(simulation).readings.irradiance(0, 0);
   Camera camera{sensor.point, sensor.point + sensor.normal, 180};
   camera.projection = Projection::hemispherical;
-  const Picture picture = take_picture(scene, simulation, final_options(camera, 200));
+  const Picture picture = take_picture(simulation, final_options(camera, 200));
   // The luminaire behind the sensor does not shine on it.
   EXPECT_NEAR(picture.radiance.pixels.col(0).mean() * 4, expected, 0.01 * expected);
 }
@@ -345,7 +345,7 @@ TEST(FinalPicture, HidesTheMeshByDay) {
   const Scene scene = daylight_office();
   const Camera camera{Point(3.7, 4.7, 1.6), Point(1, 1, 0.6), 60};
   const auto picture_by = [&](std::size_t patches) {
-    return take_picture(scene, solved(scene, patches), final_options(camera, 64, 0.01));
+    return take_picture(solved(scene, patches), final_options(camera, 64, 0.01));
   };
   const Picture coarse = picture_by(400);
   const Picture fine = picture_by(6000);
@@ -371,7 +371,7 @@ TEST(FinalPicture, ShowsSpheresThatEmit) {
   for (const PictureQuality quality : {PictureQuality::draft, PictureQuality::final}) {
     PictureOptions options = final_options(camera, 64);
     options.quality = quality;
-    const Picture picture = take_picture(scene, simulation, options);
+    const Picture picture = take_picture(simulation, options);
     EXPECT_NEAR(picture.radiance.pixels(32 * 64 + 32, 0), 5 / pi, 1e-9);
     EXPECT_EQ(picture.radiance.pixels(0, 0), 0);
     // Its outline, 2 pi 0.3 of 64 pixels, is resolved to less than a tenth of a pixel.
@@ -382,7 +382,7 @@ TEST(FinalPicture, ShowsSpheresThatEmit) {
 TEST(FinalPicture, WithoutTimeIsCancelled) {
   const Scene scene = test_room(0.5);
   const Simulation simulation = solved(scene, 400);
-  EXPECT_THROW(take_picture(scene, simulation, final_options(into_room(), 40), [](const Progress&) { return false; }),
+  EXPECT_THROW(take_picture(simulation, final_options(into_room(), 40), [](const Progress&) { return false; }),
                Cancelled);
 }
 
@@ -400,7 +400,7 @@ Scene room_with_an_open_end(double length) {
 TEST(DefaultView, ByDayIsInsideARoomWithAnOpenEnd) {
   for (const double length : {7.0, 9.0}) {
     const Scene scene = room_with_an_open_end(length);
-    const Point eye = take_picture(scene, solved(scene, 300), {.width = 4, .height = 4}).camera.eye;
+    const Point eye = take_picture(solved(scene, 300), {.width = 4, .height = 4}).camera.eye;
     EXPECT_TRUE(bounds(scene).contains(eye)) << eye.transpose();
   }
 }

@@ -22,7 +22,7 @@
 #include "files/sha256.h"
 #include "output/file/whole_file.h"
 #include "pipeline/relative_errors.h"
-#include "plan/planned_scene.h"
+#include "pipeline/world.h"
 #include "verify/path_tracer.h"
 
 #include <algorithm>
@@ -222,14 +222,14 @@ std::vector<Reference> trace(const Scene& scene, const KeptSides& sides, const s
 
 // The same, where the file does not have them already.
 template <class Place>
-std::vector<Reference> find_references(const Scene& scene, const Simulation& simulation,
-                                       const std::vector<Place>& places, ReferenceFile& file, const Options& options) {
+std::vector<Reference> find_references(const Simulation& simulation, const std::vector<Place>& places,
+                                       ReferenceFile& file, const Options& options) {
   std::vector<Place> missing;
   for (const Place& place : places)
     if (file.find(place_name(place)) == nullptr) missing.push_back(place);
   const PathOptions by{.follows_reflections = reflections_of(simulation.plan) == Reflections::followed};
   const std::vector<Reference> traced =
-      trace(scene_for_sensors(scene, simulation.plan), simulation.plan.sides, missing, by, options.paths);
+      trace(simulation.world->sensor_scene(), simulation.plan.sides, missing, by, options.paths);
   for (std::size_t k = 0; k < missing.size(); ++k) file.add(place_name(missing[k]), traced[k]);
   std::vector<Reference> references;
   for (const Place& place : places) references.push_back(*file.find(place_name(place)));
@@ -255,7 +255,8 @@ struct Comparison {
 struct TotalError {
   double stated = 0;
   double square = 0;  // of the measured error, without the noise of the paths; may be negative
-  double noise = 0;   // standard deviation of `square`
+  double noise = 0;   // standard deviation of `square` if the stated errors of all patches hold
+  double z = 0;       // root mean square over the probes of (H - H_ref) / standard error
 
   bool is_covered() const { return square - 2 * noise <= stated * stated; }
 };
@@ -274,36 +275,81 @@ std::size_t count_outside(std::span<const Comparison> sensors, double errors) {
       std::count_if(sensors.begin(), sensors.end(), [&](const Comparison& c) { return !(std::abs(c.z()) <= errors); }));
 }
 
-// Patches drawn in proportion to their area, of those that the stated total counts.
-std::vector<PatchIndex> draw_probes(const Scene& scene, const Simulation& simulation, const Options& options) {
-  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(interest_in(scene, simulation));
-  std::vector<double> upto(static_cast<std::size_t>(area.size()));
+// A patch at which the error is measured.
+struct Probe {
+  PatchIndex patch = 0;
+  double weight = 0;  // its share of the area, divided by the probability of drawing it
+};
+
+// Draws patches of those that the stated total counts: half in proportion to their area, half in proportion to their
+// part in the square of the stated error. Few patches hold most of that: drawn by area alone, the mean of their squares
+// has a standard deviation of several times itself.
+std::vector<Probe> draw_probes(const Simulation& simulation, const Eigen::VectorXd& area,
+                               const Eigen::ArrayXd& variance, const Options& options) {
+  const Eigen::ArrayXd by_area = area.array() / area.sum();
+  const Eigen::ArrayXd by_error = by_area * variance;
+  const Eigen::ArrayXd density =
+      by_error.sum() > 0 ? Eigen::ArrayXd(0.5 * (by_area + by_error / by_error.sum())) : by_area;
+  std::vector<double> upto(static_cast<std::size_t>(simulation.mesh.size()));
   double sum = 0;
-  for (std::size_t i = 0; i < upto.size(); ++i) upto[i] = sum += area[static_cast<Eigen::Index>(i)];
-  std::vector<PatchIndex> probes;
+  for (std::size_t i = 0; i < upto.size(); ++i) upto[i] = sum += density[static_cast<Eigen::Index>(i)];
+  std::vector<Probe> probes;
   for (std::size_t k = 0; k < options.probes; ++k) {
     const double u = (static_cast<double>(k) + hash({options.seed, k}) * 0x1p-32) / static_cast<double>(options.probes);
-    const auto found = std::upper_bound(upto.begin(), upto.end(), u * sum);
-    probes.push_back(static_cast<PatchIndex>(found - upto.begin()));
+    const auto i = static_cast<PatchIndex>(std::upper_bound(upto.begin(), upto.end(), u * sum) - upto.begin());
+    probes.push_back({i, by_area[i] / density[i]});
   }
   return probes;
 }
 
-// ||B - B_true||_A / ||B_true - E||_A by patches drawn in proportion to the area: means of rho^2 (H - H_ref)^2 and
-// rho^2 H_ref^2, each without the variance of the reference.
-TotalError measure_total(const Simulation& simulation, const std::vector<PatchIndex>& probes,
-                         const std::vector<Reference>& references) {
-  double difference = 0, light = 0, variance = 0;
-  for (std::size_t k = 0; k < probes.size(); ++k) {
-    const double rho = simulation.problem.scattering.reflectance(probes[k], band), weight = rho * rho;
-    const double noise = references[k].standard_error * references[k].standard_error;
-    const double square = std::pow(simulation.solution.irradiance(probes[k], band) - references[k].irradiance, 2);
-    difference += weight * (square - noise);
-    light += weight * (std::pow(references[k].irradiance, 2) - noise);
-    variance += weight * weight * (4 * std::max(0.0, square - noise) * noise + 2 * noise * noise);
+// ||B - B_true||_A / ||B_true - E||_A: the mean of rho^2 (H - H_ref)^2 by probes, without the variance of the
+// reference, over the mean of rho^2 H^2 of all patches.
+class TotalErrorMeter {
+ public:
+  TotalErrorMeter(const Scene& scene, const Simulation& simulation, const Options& options)
+      : simulation_(simulation),
+        rho_(simulation.problem.scattering.reflectance.col(band)),
+        variance_((rho_ * simulation.error_bars->total().col(band)).square()) {
+    const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(interest_in(scene, simulation));
+    const Eigen::ArrayXd share = area.array() / area.sum();
+    light_ = (share * (rho_ * simulation.solution.irradiance.col(band)).square()).sum();
+    stated_ = (share * variance_).sum();
+    probes_ = draw_probes(simulation, area, variance_, options);
   }
-  return {simulation.accuracy.back().total, difference / light, std::sqrt(variance) / light};
-}
+
+  std::vector<PathReceiver> places() const {
+    std::vector<PathReceiver> receivers;
+    const PatchMesh& mesh = simulation_.mesh;
+    for (const Probe& probe : probes_)
+      receivers.push_back({mesh.corner_points(probe.patch).points, mesh.polygon[probe.patch], mesh.side[probe.patch]});
+    return receivers;
+  }
+
+  // If a stated error is the standard deviation s of a normal error, (H - H_ref)^2 has the mean s^2 + n^2 and the
+  // variance 2 (s^2 + n^2)^2, where n is the noise of the paths. Probes add the spread of s^2 among patches.
+  TotalError measure(const std::vector<Reference>& references) const {
+    const auto count = static_cast<double>(probes_.size());
+    double square = 0, variance = 0, z = 0;
+    for (std::size_t k = 0; k < probes_.size(); ++k) {
+      const auto [i, weight] = probes_[k];
+      const double noise = std::pow(rho_[i] * references[k].standard_error, 2);
+      const double off = std::pow(rho_[i] * (simulation_.solution.irradiance(i, band) - references[k].irradiance), 2);
+      square += weight * (off - noise) / count;
+      variance += std::pow(weight * (variance_[i] + noise), 2) * 2 / count;
+      variance += std::pow(weight * variance_[i] - stated_, 2) / count;
+      z += off / (variance_[i] + noise) / count;
+    }
+    return {simulation_.accuracy.back().total, square / light_, std::sqrt(variance / count) / light_, std::sqrt(z)};
+  }
+
+ private:
+  const Simulation& simulation_;
+  Eigen::ArrayXd rho_;
+  Eigen::ArrayXd variance_;  // of each patch's radiosity, as stated
+  double light_ = 0;         // mean square of the reflected radiosity
+  double stated_ = 0;        // mean of `variance_`
+  std::vector<Probe> probes_;
+};
 
 RoomResult judge(const RandomRoom& room, const path& scene_file, const Options& options) {
   const cli::SolveArguments arguments = tool_arguments(scene_file, options.solve);
@@ -311,12 +357,12 @@ RoomResult judge(const RandomRoom& room, const path& scene_file, const Options& 
   const ThreadLimit limit(arguments.request.resources.threads);
   const double begin = cpu_seconds();
   const Simulation simulation = simulate(input.scene, input.request);
-  const SensorView view = read_sensors(input.scene, simulation);
+  const SensorView view = read_sensors(simulation);
   RoomResult result{room.name, room.kind, {}, {}, simulation.mesh.size(), cpu_seconds() - begin, 0};
 
   ReferenceFile file = open_references(scene_file, options);
   const std::vector<Sensor> sensors = all_sensors(input.scene.sensors);
-  const std::vector<Reference> references = find_references(input.scene, simulation, sensors, file, options);
+  const std::vector<Reference> references = find_references(simulation, sensors, file, options);
   double mean = 0;
   for (const Reference& reference : references) mean += reference.irradiance / static_cast<double>(references.size());
   for (std::size_t k = 0; k < sensors.size(); ++k) {
@@ -324,14 +370,9 @@ RoomResult judge(const RandomRoom& room, const path& scene_file, const Options& 
     result.sensors.push_back({room.name, view.readings.irradiance(row, band), view.readings.standard_error(row, band),
                               references[k], std::max(references[k].irradiance, mean / 10)});
   }
-  if (options.probes > 0 && !simulation.accuracy.empty()) {
-    const std::vector<PatchIndex> probes = draw_probes(input.scene, simulation, options);
-    std::vector<PathReceiver> receivers;
-    const PatchMesh& mesh = simulation.mesh;
-    for (const PatchIndex i : probes)
-      receivers.push_back({mesh.corner_points(i).points, mesh.polygon[i], mesh.side[i]});
-    result.total =
-        measure_total(simulation, probes, find_references(input.scene, simulation, receivers, file, options));
+  if (options.probes > 0 && simulation.error_bars && !simulation.accuracy.empty()) {
+    const TotalErrorMeter meter(input.scene, simulation, options);
+    result.total = meter.measure(find_references(simulation, meter.places(), file, options));
   }
   file.save();
   result.path_cpu_seconds = cpu_seconds() - begin - result.cpu_seconds;
@@ -370,7 +411,13 @@ std::string formatted(const char* format, double value) {
 
 constexpr const char* table_head =
     "| rooms | number | sensors | within 2 | within 3 | mean z | rms z | worst z | true error, rms | stated / true | "
-    "totals that cover | CPU s per room |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    "totals that cover | rms z of patches | CPU s per room |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+double rms_z(const std::vector<TotalError>& totals) {
+  double sum = 0;
+  for (const TotalError& total : totals) sum += total.z * total.z;
+  return totals.empty() ? 0 : std::sqrt(sum / static_cast<double>(totals.size()));
+}
 
 std::string table_row(const Group& group) {
   const auto count = static_cast<double>(group.sensors.size());
@@ -394,7 +441,7 @@ std::string table_row(const Group& group) {
          formatted("%+.1f", worst->z()) + " (" + worst->room + ") | " +
          (difference > 0 ? formatted("%.1f %%", 100 * std::sqrt(difference)) : "below noise") + " | " +
          (difference > 0 ? formatted("%.2f", std::sqrt(stated / difference)) : "-") + " | " + std::to_string(covered) +
-         " of " + std::to_string(group.totals.size()) + " | " +
+         " of " + std::to_string(group.totals.size()) + " | " + formatted("%.2f", rms_z(group.totals)) + " | " +
          formatted("%.1f", group.cpu_seconds / static_cast<double>(group.rooms)) + " |\n";
 }
 
@@ -426,8 +473,8 @@ void print_room(const RoomResult& room) {
       mean, worst, 100 * off, 100 * light);
   if (room.total) {
     const TotalError& total = *room.total;
-    std::printf("  total %.1f %% stated, %.1f %% true%s", 100 * total.stated,
-                100 * std::sqrt(std::max(0.0, total.square)), total.is_covered() ? "" : " NOT COVERED");
+    std::printf("  total %.1f %% stated, %.1f %% true, rms z of patches %.2f%s", 100 * total.stated,
+                100 * std::sqrt(std::max(0.0, total.square)), total.z, total.is_covered() ? "" : " NOT COVERED");
   }
   std::puts("");
   std::fflush(stdout);
@@ -453,8 +500,7 @@ std::string make_page(const std::string& table, const Options& options) {
          ".\n\n"
          "The program makes rooms at random and solves each with the default settings of `patchlight solve`. "
          "It compares 15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four "
-         "near "
-         "walls, one that faces a wall and one below the ceiling. Half of the rooms are rotated; a third is in "
+         "near walls, one that faces a wall and one below the ceiling. Half of the rooms are rotated; a third is in "
          "millimeters.\n\n" +
          table +
          "\nHow to read the table:\n\n"
@@ -468,7 +514,9 @@ std::string make_page(const std::string& table, const Options& options) {
          "- *Totals that cover* counts the rooms whose stated total is at least their true relative error. The program "
          "measures it at " +
          std::to_string(options.probes) +
-         " patches per room, drawn in proportion to their area, less twice the noise of the paths.\n"
+         " patches per room, half drawn by area and half by stated error. It allows two standard deviations of "
+         "that measurement.\n"
+         "- *Rms z of patches* is the root mean square of (solver - paths) / standard error over these patches.\n"
          "- *CPU s* covers solving and reading the sensors, without reading the model and without path tracing.\n";
 }
 

@@ -75,7 +75,7 @@ Found with_patches(const Scene& scene, double edge, bool error_bars) {
   Request request;
   request.mesh.max_edge = edge;
   request.accuracy.error_bars = error_bars;
-  const SensorView view = read_sensors(scene, simulate(scene, request));
+  const SensorView view = read_sensors(simulate(scene, request));
   Found found;
   for (const Sensor& sensor : scene.sensors[0].sensors) {
     const double error = view.readings.irradiance(found.sensors, 0) - exact(sensor);
@@ -157,7 +157,7 @@ TEST(CoarsePatches, BehindAColouredPaneSendNothingThatThisHolds) {
   Request request;
   request.mesh.max_edge = 1;
   request.mesh.sides = Sides::both;
-  const SensorView view = read_sensors(scene, simulate(scene, request));
+  const SensorView view = read_sensors(simulate(scene, request));
   EXPECT_GT(view.readings.irradiance(0, 0), 0);
   EXPECT_EQ(view.readings.irradiance(0, 1), 0);
 }

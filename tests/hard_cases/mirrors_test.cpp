@@ -74,7 +74,7 @@ TEST(PlanarMirror, ShowsTheLampOnceMore) {
     const std::vector<Point> image = mirrored_at_low_x(lamp);
     return 10 * (point_to_polygon(x, Vector::UnitZ(), lamp) + R * point_to_polygon(x, Vector::UnitZ(), image));
   };
-  const Readings readings = read_sensors(scene, simulation).readings;
+  const Readings readings = read_sensors(simulation).readings;
   for (std::size_t k = 0; k < group.sensors.size(); ++k)
     EXPECT_NEAR(readings.irradiance(static_cast<Eigen::Index>(k), 0) / expected_at(group.sensors[k].point), 1, 0.003);
 
@@ -258,7 +258,7 @@ TEST(PlanarMirrors, ShowThreeImagesInACorner) {
   for (const Point& at : {Point(0.3, 2.5, 0.01), Point(2, 1, 0.01), Point(3.1, 3.3, 0.01)})
     sensors.push_back({at, Vector::UnitZ()});
   const Simulation simulation = simulate(with_sensors(scene, sensors), fronts(200));
-  const Readings readings = read_sensors(with_sensors(scene, sensors), simulation).readings;
+  const Readings readings = read_sensors(simulation).readings;
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     double expected = 0;
     for (const double x : {1.2, -1.2}) {
@@ -283,7 +283,7 @@ TEST(PlanarMirror, ShowsTheSky) {
   scene.sky->zenith_radiance = Spectrum::Constant(1, 10);
   scene.sky->ground_radiance = Spectrum::Zero(1);
   scene = with_sensors(std::move(scene), {{Point(0, 0, 1), -Vector::UnitZ()}});
-  const Readings readings = read_sensors(scene, simulate(scene, fronts(100))).readings;
+  const Readings readings = read_sensors(simulate(scene, fronts(100))).readings;
   const double expected = std::numbers::pi * 10 * 0.8;
   EXPECT_NEAR(readings.irradiance(0, 0), expected, 4 * readings.standard_error(0, 0) + 1e-3 * expected);
   EXPECT_LT(readings.standard_error(0, 0), 0.01 * expected);
@@ -300,7 +300,7 @@ TEST(PlanarMirror, ShowsAWallBehindTheSensor) {
   const Simulation simulation = simulate(scene, fronts(100));
   const std::vector<Point> image = mirrored_at_low_x(corner_points(scene, 0));
   const double expected = 5 * R * point_to_polygon(Point(1, 0.3, 0.2), -Vector::UnitX(), image);
-  const Readings readings = read_sensors(scene, simulation).readings;
+  const Readings readings = read_sensors(simulation).readings;
   EXPECT_GT(expected, 0.5);
   EXPECT_NEAR(readings.irradiance(0, 0), expected, 4 * readings.standard_error(0, 0) + 1e-6);
   EXPECT_LT(readings.standard_error(0, 0), 0.02 * expected);
@@ -321,7 +321,7 @@ TEST(Pane, ReflectsByItsAngle) {
   for (const double degrees : {0.0, 30.0, 60.0, 80.0})
     sensors.push_back({Point(1, 2 * std::tan(degrees * std::numbers::pi / 180), 0.01), -Vector::UnitX()});
   scene = with_sensors(std::move(scene), sensors);
-  const Readings readings = read_sensors(scene, simulate(scene, fronts(100))).readings;
+  const Readings readings = read_sensors(simulate(scene, fronts(100))).readings;
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const Vector way = Point(-1, 0, 0) - sensors[k].point;
     const double cosine = -way.x() / way.norm();

@@ -6,7 +6,7 @@
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
-#include "plan/planned_scene.h"
+#include "pipeline/world.h"
 #include "unit/output/temporary_folder.h"
 #include "verify/path_tracer.h"
 
@@ -120,8 +120,8 @@ TEST(RandomRooms, SolverAndPathsAgreeInRoomsWithLamps) {
     request.mesh.patches = 500;
     request.accuracy.error_bars = true;
     const Simulation simulation = simulate(scene, request);
-    const Readings readings = read_sensors(scene, simulation).readings;
-    const PathEstimate paths = trace_irradiance(scene_for_sensors(scene, simulation.plan), simulation.plan.sides,
+    const Readings readings = read_sensors(simulation).readings;
+    const PathEstimate paths = trace_irradiance(simulation.world->sensor_scene(), simulation.plan.sides,
                                                 all_sensors(scene.sensors), {.paths = 4096});
     const Field error = (readings.standard_error.square() + paths.standard_error.square()).sqrt();
     EXPECT_LE(((readings.irradiance - paths.irradiance).abs() / error).maxCoeff(), 4) << kind;

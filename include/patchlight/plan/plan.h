@@ -68,20 +68,22 @@ struct Request {
   Resources resources = {};
 };
 
+struct Coverings;
 struct Goal;
 
 /// How a scene is going to be solved: the parts of the request with nothing left open, and what was decided in place of
 /// mesh and effects.
 struct Plan {
   KeptSides sides;
-  ContactLines contacts;                  ///< where patches end besides the outlines of their polygons
-  bool graded_edges = false;              ///< as asked for
-  double max_edge = 0;                    ///< metres; by daylight of the enclosed spaces
-  std::shared_ptr<const Goal> goal = {};  ///< the surfaces that the run is about; null: all, each by its area
-  std::size_t patches_around = 0;         ///< patches of the surroundings of the goal
-  AssemblyOptions assembly;               ///< stored as asked for, else as pairs, rays or rows of the lamps
-  SolverOptions solver;                   ///< of a mesh on the way to an accuracy: its own relative error
-  AccuracyOptions accuracy;               ///< with error bars where patches are refined
+  std::shared_ptr<const Coverings> coverings = {};  ///< kept sides that lie over others; null: none
+  ContactLines contacts;                            ///< where patches end besides the outlines of their polygons
+  bool graded_edges = false;                        ///< as asked for
+  double max_edge = 0;                              ///< metres; by daylight of the enclosed spaces
+  std::shared_ptr<const Goal> goal = {};            ///< the surfaces that the run is about; null: all, each by its area
+  std::size_t patches_around = 0;                   ///< patches of the surroundings of the goal
+  AssemblyOptions assembly;                         ///< stored as asked for, else as pairs, rays or rows of the lamps
+  SolverOptions solver;                             ///< of a mesh on the way to an accuracy: its own relative error
+  AccuracyOptions accuracy;                         ///< with error bars where patches are refined
   Resources resources;
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else

@@ -53,13 +53,12 @@ Field display_radiance(const Simulation& simulation);
 /// Scale that maps radiance to display values, as Picture::exposure, for the patches of a solved scene: by its area,
 /// nine tenths of what sends out light stay below 0.7 of the display's white. By day what counts is
 /// Simulation::enclosed, as long as some of it is lit: outside, all is so much brighter.
-double exposure_of(const Scene& scene, const Simulation& simulation);
+double exposure_of(const Simulation& simulation);
 
-/// A picture of a solved scene. `scene` is the one that was solved, and `simulation` comes from simulate(). A final one
+/// A picture of a solved scene. `simulation` comes from simulate(). A final one
 /// that the observer stops is what is there by then; before there is anything, Cancelled is thrown. \throws Cancelled;
 /// InputError for a camera that is none.
-Picture take_picture(const Scene& scene, const Simulation& simulation, const PictureOptions& options = {},
-                     const Observer& observer = {});
+Picture take_picture(const Simulation& simulation, const PictureOptions& options = {}, const Observer& observer = {});
 
 /// A picture of a model as it is, without light: each point as bright as its reflectance times its ambient occlusion
 /// (SolvedSurface::ambient_occlusion) within a distance in metres. Of the options camera, width and height count.
@@ -75,10 +74,10 @@ struct LightmapOptions {
 };
 
 /// The light on all surfaces of a solved scene but clear ones, for engines that show it in real time: gathered at each
-/// texel as in a final picture. `scene` is the one that was solved, and `simulation` comes from simulate(). Takes 44
+/// texel as in a final picture. `simulation` comes from simulate(). Takes 44
 /// bytes for each texel with three bands. \throws Cancelled; InputError when there are more groups of coplanar faces
 /// than the largest map has charts for.
-Lightmap bake_lightmap(const Scene& scene, const Simulation& simulation, const LightmapOptions& options = {},
+Lightmap bake_lightmap(const Simulation& simulation, const LightmapOptions& options = {},
                        const Observer& observer = {});
 
 }  // namespace patchlight

@@ -18,16 +18,19 @@ struct SensorView {
 };
 
 /// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from
-/// luminaires, sun and sky. `scene` is the one that was solved, and `simulation` comes from simulate(). \throws
-/// Cancelled.
-SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer = {});
+/// luminaires, sun and sky. `simulation` comes from simulate(). \throws Cancelled.
+SensorView read_sensors(const Simulation& simulation, const Observer& observer = {});
+
+/// The same at other places than those of its scene.
+SensorView read_sensors(const Simulation& simulation, const std::vector<SensorGroup>& sensors,
+                        const Observer& observer = {});
 
 /// True when sensors have daylight factors: all light comes from a CIE overcast sky.
 bool has_daylight_factors(const Scene& scene);
 
-/// The surface of a solved scene, ready to be written. It refers to its scene and simulation, which must outlive it.
+/// The surface of a solved scene, ready to be written. It refers to the simulation, which must outlive it.
 struct SolvedSurface {
-  const Scene& scene;
+  const Scene& scene;  ///< as read
   const Simulation& simulation;
   Field radiance_at_vertices;              ///< the smoothed radiance at the mesh's vertices, W/(m^2 sr)
   Eigen::VectorXd ambient_occlusion = {};  ///< per patch: the share of the hemisphere, weighted by the cosine, in which
@@ -36,9 +39,8 @@ struct SolvedSurface {
 };
 
 /// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in metres finds its
-/// ambient occlusion. `scene` is the one that was solved, and `simulation` comes from simulate().
-SolvedSurface surface_of(const Scene& scene, const Simulation& simulation,
-                         const std::optional<double>& ambient_distance = {});
+/// ambient occlusion. `simulation` comes from simulate().
+SolvedSurface surface_of(const Simulation& simulation, const std::optional<double>& ambient_distance = {});
 
 /// What someone sees who stands at a camera's eye and looks at its target.
 struct ObserverReading {
@@ -53,7 +55,7 @@ struct ObserverReading {
 /// What observers read in a solved scene. Windows, and what is brighter than 500 cd/m^2 and four times the mean of the
 /// half space that is seen, glares, and so do measured luminaires by the sides of their luminous openings, with I / A_p
 /// as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
-std::vector<ObserverReading> read_observers(const Scene& scene, const Simulation& simulation,
-                                            const std::vector<Camera>& cameras, const Observer& observer = {});
+std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
+                                            const Observer& observer = {});
 
 }  // namespace patchlight

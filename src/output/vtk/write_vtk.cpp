@@ -3,9 +3,9 @@
 #include "light/colour.h"
 #include "light/photometry.h"
 #include "output/vtk/vtk_polygons.h"
+#include "pipeline/world.h"
 #include "render/tone_map.h"
 #include "solve/scattering.h"
-#include "visibility/tracing.h"
 
 #include <array>
 #include <numbers>
@@ -175,7 +175,7 @@ void add_history(vtkFieldData& facts, const Simulation& simulation) {
 // read_vtk() takes these.
 void add_what_pictures_need(vtkFieldData& facts, const Simulation& simulation, const Provenance& provenance) {
   facts.AddArray(strings("scene_hash", {provenance.scene_hash}));
-  const bool follows = simulation.tracing && simulation.tracing->reflections() == Reflections::followed;
+  const bool follows = simulation.world && simulation.world->tracing().reflections() == Reflections::followed;
   facts.AddArray(numbers<vtkIntArray>("follows_reflections", std::array{follows ? 1 : 0}));
   std::vector<std::string> names;
   std::vector<int> simulated, forced;

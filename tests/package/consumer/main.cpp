@@ -8,6 +8,6 @@ int main(int, char** arguments) {
   patchlight::Request request;
   request.mesh.patches = 100;
   const patchlight::Simulation simulation = patchlight::simulate(scene, request);
-  patchlight::write_result(arguments[2], patchlight::surface_of(scene, simulation), {"consumer", 1.0});
+  patchlight::write_result(arguments[2], patchlight::surface_of(simulation), {"consumer", 1.0});
   return simulation.solution.converged ? 0 : 1;
 }

@@ -34,7 +34,7 @@ class ReadSolution : public testing::Test {
   // The tiny solution, changed after it was smoothed.
   void write(const std::function<void(Simulation&)>& change = [](Simulation&) {}) {
     Simulation simulation = tiny_simulation();
-    const SolvedSurface surface = surface_of(scene, simulation);
+    const SolvedSurface surface = surface_of(simulation);
     change(simulation);
     Provenance provenance{"patchlight solve tiny.obj", 1};
     provenance.scene_hash = scene_hash(scene);
@@ -43,7 +43,7 @@ class ReadSolution : public testing::Test {
 
   void expect_refused(const std::function<void(Simulation&)>& change) {
     write(change);
-    EXPECT_THROW(read_solution(file, scene), InputError);
+    EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError);
   }
 
   // The file with a change in VTK's terms.
@@ -72,7 +72,7 @@ class ReadSolution : public testing::Test {
 
 TEST_F(ReadSolution, ReturnsTheSolutionInSinglePrecision) {
   write();
-  const Simulation read = read_solution(file, scene);
+  const Simulation read = read_solution(file, std::make_shared<const Scene>(scene));
   const Simulation written = tiny_simulation();
   ASSERT_EQ(read.mesh.size(), written.mesh.size());
   EXPECT_EQ(read.mesh.vertices, written.mesh.vertices);
@@ -103,11 +103,11 @@ TEST_F(ReadSolution, RefusesNumbersOfPolygonsThatAreNotThere) {
   for (const double number : {3.0, -1.0, 1e9}) {
     write();
     edit([=](vtkPolyData& of) { of.GetCellData()->GetArray("polygon")->SetComponent(2, 0, number); });
-    EXPECT_THROW(read_solution(file, scene), InputError) << number;
+    EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError) << number;
   }
   write();
   edit([](vtkPolyData& of) { of.GetCellData()->GetArray("polygon")->SetComponent(1, 0, 2); });
-  EXPECT_THROW(read_solution(file, scene), InputError) << "polygon 1 has no patch";
+  EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError) << "polygon 1 has no patch";
 }
 
 TEST_F(ReadSolution, RefusesFactsWithoutValues) {
@@ -119,7 +119,7 @@ TEST_F(ReadSolution, RefusesFactsWithoutValues) {
       of.GetFieldData()->RemoveArray(fact);
       of.GetFieldData()->AddArray(none);
     });
-    EXPECT_THROW(read_solution(file, scene), InputError) << fact;
+    EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError) << fact;
   }
 }
 
@@ -135,7 +135,7 @@ TEST_F(ReadSolution, DamagedFilesAreReadOrRefused) {
     if (mutant % 3 == 2) bad.replace(below(good.size() - 8), 8, "99999999");
     put(bad);
     try {
-      read_solution(file, scene);
+      read_solution(file, std::make_shared<const Scene>(scene));
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
     }

@@ -261,9 +261,9 @@ TEST(SensorsFarOff, AreThoseFartherAwayThanTheModelIsLong) {
   Scene scene = cube_room(0.5, 0.5);
   scene.sensors = {
       {.name = "near", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}, {Point(2.7, 0, 0), Vector::UnitZ()}}}};
-  EXPECT_TRUE(sensors_far_off(scene).empty());
+  EXPECT_TRUE(sensors_far_off(scene, scene.sensors).empty());
   scene.sensors[0].sensors.push_back({Point(500, 500, 500), Vector::UnitZ()});
-  const std::vector<std::string> warnings = sensors_far_off(scene);
+  const std::vector<std::string> warnings = sensors_far_off(scene, scene.sensors);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("1 sensor lies farther from the model"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("sensor 3"), std::string::npos) << warnings[0];
@@ -338,8 +338,8 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   add(Point(1, 2.5, 0.8), Vector::UnitZ(), 6);      // in the plane of a side, beside it
   scene.sensors.push_back(group);
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found =
-      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
+  const std::vector<std::string> found = doubtful_sensors(
+      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
       << found[0];
@@ -351,7 +351,8 @@ TEST(SensorsCloseToPictures, AreThoseThatSeeSuchAPatchFromNearItsWidth) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   const auto told = [&](const Point& point, const Vector& normal) {
     scene.sensors = {{.name = "a", .sensors = {{point, normal}}}};
-    return sensors_close_to_pictures(scene, tessellate(scene, kept_sides(scene, Sides::front), 1)).size();
+    return sensors_close_to_pictures(scene, scene.sensors, tessellate(scene, kept_sides(scene, Sides::front), 1))
+        .size();
   };
   const Vector down = -Vector::UnitZ();
   EXPECT_EQ(told({1.5, 1.5, 1}, down), 0U) << "the floor has no picture";
@@ -371,8 +372,8 @@ TEST(DoubtfulSensors, ManyAreCounted) {
   Scene scene = furnished_room(0.5);
   scene.sensors.push_back({.name = "all", .sensors = std::vector<Sensor>(9, {Point(1.5, 1.4, 0.8), Vector::UnitZ()})});
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found =
-      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
+  const std::vector<std::string> found = doubtful_sensors(
+      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder));
   ASSERT_EQ(found.size(), 6U);
   EXPECT_EQ(found[5].rfind("4 more sensors", 0), 0U) << found[5];
 }

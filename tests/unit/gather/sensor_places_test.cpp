@@ -27,7 +27,7 @@ Point between(const Quad& quad, double u, double v) {
 Field gathered(const Scene& scene, const PatchMesh& mesh, const Field& radiosity) {
   const Occluder occluder(scene, Occluder::Blockers::all);
   std::vector<Sensor> sensors;
-  for (const SensorPlace& place : place_sensors(scene, kept_sides(scene, Sides::both), occluder)) {
+  for (const SensorPlace& place : place_sensors(scene, scene.sensors, kept_sides(scene, Sides::both), occluder)) {
     EXPECT_EQ(place.standing, Standing::free);
     sensors.push_back(place.sensor);
   }
@@ -110,7 +110,7 @@ TEST(PlaceSensors, InsideAWallThatStandsOpenOnTheFloorAreFound) {
       }
       scene.sensors = {group};
       const Occluder occluder(scene, Occluder::Blockers::all);
-      const auto places = place_sensors(scene, kept_sides(scene, sides), occluder);
+      const auto places = place_sensors(scene, scene.sensors, kept_sides(scene, sides), occluder);
       for (std::size_t k = 0; k < places.size(); ++k) {
         const Point point = motion.inverse() * group.sensors[k].point;
         const bool in_wall = point.x() > 3 && point.x() < 3.2 && std::abs(point.y() - 1.5) > 0.5;
@@ -147,7 +147,7 @@ TEST(PlaceSensors, InALitRoomThatIsTurnedInsideOutAreFree) {
     scene.sensors = {
         {.name = "room", .sensors = {{Point(1, 1, 0.8), Vector::UnitZ()}, {Point(3, 2, 1), Vector::UnitZ()}}}};
     const Occluder occluder(scene, Occluder::Blockers::all);
-    for (const SensorPlace& place : place_sensors(scene, kept_sides(scene, Sides::automatic), occluder))
+    for (const SensorPlace& place : place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder))
       EXPECT_EQ(place.standing, Standing::free) << with_hole;
   }
 }

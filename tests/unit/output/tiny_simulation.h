@@ -3,7 +3,7 @@
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
-#include "visibility/tracing.h"
+#include "pipeline/world.h"
 
 #include <limits>
 
@@ -26,7 +26,6 @@ inline Scene tiny_scene() {
 inline Simulation tiny_simulation() {
   const Scene scene = tiny_scene();
   Simulation simulation;
-  simulation.tracing = std::make_shared<const Tracing>(scene);
   PatchMesh& mesh = simulation.mesh;
   mesh.vertices = scene.vertices;
   mesh.corners = {{0, 1, 2, 3}, {1, 0, 4, 4}, {2, 1, 4, 4}};
@@ -66,15 +65,21 @@ inline Simulation tiny_simulation() {
   simulation.balance = {flux, 2 * flux, flux, flux, flux, flux, 1e-7};
   simulation.plan.assembly.seed = (std::uint64_t{1} << 60) + 1;
   simulation.plan.decisions = {{Effect::occlusion, false, "a reason", "a saving", true}};
+  simulation.world = std::make_shared<const World>(std::make_shared<const Scene>(scene), simulation.plan);
   simulation.costs = {{Stage::mesh, 0.5, 1}, {Stage::solve, 0.25, 0.5}};
+  return simulation;
+}
+
+/// The same simulation in another scene.
+inline Simulation in_scene(Simulation simulation, const Scene& scene) {
+  simulation.world = std::make_shared<const World>(std::make_shared<const Scene>(scene), simulation.plan);
   return simulation;
 }
 
 /// Its surface.
 inline SolvedSurface tiny_surface() {
-  static const Scene scene = tiny_scene();
   static const Simulation simulation = tiny_simulation();
-  return surface_of(scene, simulation);
+  return surface_of(simulation);
 }
 
 /// The same simulation with invented error bars on the irradiance.

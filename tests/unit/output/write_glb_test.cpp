@@ -24,7 +24,8 @@ constexpr double exposure = 0.125;
 
 Glb written(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
-  write_glb(folder.path() / "result.glb", surface_of(scene, simulation), {"patchlight solve \xff.obj", exposure});
+  const Simulation in = in_scene(simulation, scene);
+  write_glb(folder.path() / "result.glb", surface_of(in), {"patchlight solve \xff.obj", exposure});
   return taken_apart(content_of(folder.path() / "result.glb"));
 }
 

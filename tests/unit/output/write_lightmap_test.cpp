@@ -45,7 +45,7 @@ const Baked& baked() {
     Request request;
     request.mesh.max_edge = 0.5;
     Simulation simulation = simulate(scene, request);
-    Lightmap map = bake_lightmap(scene, simulation, {.texel = 0.25});
+    Lightmap map = bake_lightmap(simulation, {.texel = 0.25});
     return Baked{std::move(scene), std::move(simulation), std::move(map)};
   }();
   return one;

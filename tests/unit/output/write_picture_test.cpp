@@ -183,9 +183,9 @@ TEST(WriteDifference, OfSolutionsThatDifferByAFactorIsThatShareOfTheFirst) {
       .camera = Camera{Point(0.3, 0.3, 1.6), Point(3, 2.2, 0.9), 60}, .width = 16, .height = 12};
   Request request;
   request.mesh.max_edge = 0.5;
-  const Picture first = take_picture(scene, simulate(scene, request), options);
+  const Picture first = take_picture(simulate(scene, request), options);
   for (Material& material : scene.materials) material.exitance *= 1.5;
-  const Picture second = take_picture(scene, simulate(scene, request), options);
+  const Picture second = take_picture(simulate(scene, request), options);
   write_difference(folder.path() / "both.png", first, second, bands_of(scene));
 
   const Eigen::VectorXd half = 0.5 * luminous_efficacy * first.radiance.pixels.col(0).matrix();

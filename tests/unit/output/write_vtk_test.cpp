@@ -43,7 +43,8 @@ vtkSmartPointer<vtkPolyData> read(const std::string& file) {
 vtkSmartPointer<vtkPolyData> written_and_read(const Scene& scene, const Simulation& simulation) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "result.vtp";
-  write_vtk(file, surface_of(scene, simulation), {"patchlight solve tiny.obj", exposure});
+  const Simulation in = in_scene(simulation, scene);
+  write_vtk(file, surface_of(in), {"patchlight solve tiny.obj", exposure});
   EXPECT_EQ(folder.entries(), 1U);
   return read(file);
 }

@@ -38,7 +38,7 @@ double area_of(const DrawnFaces& drawn) {
 
 TEST(DrawnFaces, AreThePatchesWhereTheseAreFew) {
   const Scene scene = box();
-  const SolvedSurface surface = surface_of(scene, solved());
+  const SolvedSurface surface = surface_of(solved());
   const DrawnFaces drawn = drawn_faces(surface, 1, 1000);
   EXPECT_EQ(drawn.corners, solved().mesh.corners);
   EXPECT_EQ(drawn.vertices.size(), solved().mesh.vertices.size());
@@ -49,7 +49,7 @@ TEST(DrawnFaces, AreThePatchesWhereTheseAreFew) {
 // Whole faces cover what their patches do, with the fronts on the same side.
 TEST(DrawnFaces, CoverTheSameAreaWithFewerFaces) {
   const Scene scene = box();
-  const SolvedSurface surface = surface_of(scene, solved());
+  const SolvedSurface surface = surface_of(solved());
   const DrawnFaces drawn = drawn_faces(surface, 1, 300);
   EXPECT_LE(drawn.corners.size(), 300U);
   EXPECT_GT(drawn.corners.size(), 12U);
@@ -68,7 +68,7 @@ TEST(DrawnFaces, CoverTheSameAreaWithFewerFaces) {
 // The lamp has one radiance: nothing is lost when it becomes one face, so it is the first that does.
 TEST(DrawnFaces, BecomeWholeWhereLeastIsLost) {
   const Scene scene = box();
-  const SolvedSurface surface = surface_of(scene, solved());
+  const SolvedSurface surface = surface_of(solved());
   const DrawnFaces drawn = drawn_faces(surface, 1, solved().mesh.size() - 1);
   std::map<PolygonIndex, PatchIndex> whole;
   for (const PatchRange& range : drawn.patches) {
@@ -80,7 +80,7 @@ TEST(DrawnFaces, BecomeWholeWhereLeastIsLost) {
 
 TEST(DrawnFaces, LeaveOutTheSmallestAtLast) {
   const Scene scene = box();
-  const SolvedSurface surface = surface_of(scene, solved());
+  const SolvedSurface surface = surface_of(solved());
   const DrawnFaces drawn = drawn_faces(surface, 1, 6);
   EXPECT_LE(drawn.corners.size(), 6U);
   EXPECT_EQ(drawn.patches.size(), 3U);

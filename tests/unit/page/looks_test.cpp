@@ -24,25 +24,22 @@ double exposure_of_patches(const Simulation& simulation, const Eigen::Vector3d& 
 }
 
 TEST(ExposureOf, ByDayIsThatOfTheInside) {
-  const Scene scene = tiny_scene();
   const Simulation whole = tiny_simulation(), day = by_day();
-  EXPECT_EQ(exposure_of(scene, whole), exposure_of_patches(whole, Eigen::Vector3d::Ones()));
-  EXPECT_EQ(exposure_of(scene, day), exposure_of_patches(day, day.enclosed));
-  EXPECT_GT(exposure_of(scene, day), 2 * exposure_of(scene, whole));
+  EXPECT_EQ(exposure_of(whole), exposure_of_patches(whole, Eigen::Vector3d::Ones()));
+  EXPECT_EQ(exposure_of(day), exposure_of_patches(day, day.enclosed));
+  EXPECT_GT(exposure_of(day), 2 * exposure_of(whole));
 }
 
 // Where no light gets in there is nothing to expose for.
 TEST(ExposureOf, IsThatOfAllWhereTheInsideIsDark) {
-  const Scene scene = tiny_scene();
   Simulation day = by_day();
   day.solution.radiosity.row(0) = 0;
-  EXPECT_EQ(exposure_of(scene, day), exposure_of_patches(day, Eigen::Vector3d::Ones()));
+  EXPECT_EQ(exposure_of(day), exposure_of_patches(day, Eigen::Vector3d::Ones()));
 }
 
 TEST(LooksOf, ByDayAreForTheInsideAndForTheOutside) {
-  const Scene scene = tiny_scene();
   const Simulation day = by_day();
-  const SolvedSurface surface = surface_of(scene, day);
+  const SolvedSurface surface = surface_of(day);
   const double inside = exposure_of_patches(day, day.enclosed);
   const double outside = exposure_of_patches(day, Eigen::Vector3d(0, 1, 1));
   const std::vector<Look> from_inside = looks_of(surface, 1.5 * inside);
@@ -58,22 +55,22 @@ TEST(LooksOf, ByDayAreForTheInsideAndForTheOutside) {
 }
 
 TEST(LooksOf, AreOneWithoutDaylightOrWithoutAnInside) {
-  const Scene scene = tiny_scene();
   const Simulation whole = tiny_simulation();
-  EXPECT_EQ(looks_of(surface_of(scene, whole), 3).size(), 1U);
+  EXPECT_EQ(looks_of(surface_of(whole), 3).size(), 1U);
   Simulation open = by_day();
   open.enclosed.setZero();
-  EXPECT_EQ(looks_of(surface_of(scene, open), 3).size(), 1U);
+  EXPECT_EQ(looks_of(surface_of(open), 3).size(), 1U);
 }
 
 TEST(LooksPart, HasASkyWhereTheSceneHasOne) {
   Scene scene = tiny_scene();
   const Simulation day = by_day();
-  EXPECT_FALSE(looks_part(surface_of(scene, day), 1, 10)[0].contains("sky"));
-  EXPECT_TRUE(sky_directions(surface_of(scene, day)).is_null());
+  EXPECT_FALSE(looks_part(surface_of(day), 1, 10)[0].contains("sky"));
+  EXPECT_TRUE(sky_directions(surface_of(day)).is_null());
   scene.sky = Sky{.horizontal_irradiance = rgb(1, 1, 1)};
-  for (const auto& look : looks_part(surface_of(scene, day), 1, 10)) EXPECT_EQ(look["sky"]["components"], 3);
-  EXPECT_EQ(sky_directions(surface_of(scene, day))["directions"]["components"], 3);
+  const Simulation below_sky = in_scene(day, scene);
+  for (const auto& look : looks_part(surface_of(below_sky), 1, 10)) EXPECT_EQ(look["sky"]["components"], 3);
+  EXPECT_EQ(sky_directions(surface_of(below_sky))["directions"]["components"], 3);
 }
 
 }  // namespace

@@ -25,8 +25,9 @@ std::size_t count(const std::string& text, const std::string& word) {
   return found;
 }
 
-std::string page_with(const Scene& scene, const Simulation& simulation) {
-  const SolvedSurface surface = surface_of(scene, simulation);
+std::string page_with(const Scene& scene, const Simulation& solved) {
+  const Simulation simulation = in_scene(solved, scene);
+  const SolvedSurface surface = surface_of(simulation);
   const Report report = report_of(scene, {}, simulation);
   return page_of(
       {.scene = scene, .provenance = {"patchlight solve x", 1, "abcd"}, .surface = &surface, .report = &report});

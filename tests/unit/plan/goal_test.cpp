@@ -28,7 +28,8 @@ Scene office_on(double ground) {
 }
 
 std::shared_ptr<const Goal> goal_of(const Scene& scene) {
-  return find_goal(scene, kept_sides(scene, Sides::automatic), {}, 1);
+  const KeptSides sides = kept_sides(scene, Sides::automatic);
+  return find_goal(scene, sides, find_coverings(scene, sides), {}, 1);
 }
 
 TEST(Goal, IsTheRoomAndNotTheGround) {
@@ -83,7 +84,7 @@ TEST(Goal, KeepsTheRoomAsItIsInAWideTerrain) {
   request.accuracy.error_bars = true;
   const auto readings = [&](double ground) {
     const Scene scene = office_on(ground);
-    return read_sensors(scene, simulate(scene, request)).readings;
+    return read_sensors(simulate(scene, request)).readings;
   };
   const Readings near = readings(40);
   const Readings far = readings(400);

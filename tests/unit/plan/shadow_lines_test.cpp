@@ -73,7 +73,7 @@ Request patches(std::size_t number) {
 std::vector<ContactLine> lines_on_floor(const Scene& scene) {
   const std::size_t count = scene.polygons.size();
   const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
-  return find_shadow_lines(scene, front, {{scene.sun->direction, 0}})[0];
+  return find_shadow_lines(scene, front, find_coverings(scene, front), {{scene.sun->direction, 0}})[0];
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ TEST(ShadowLines, EndAtTheHeightOfTheLight) {
   Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(1.1, 1.1, 3));
   const std::size_t count = scene.polygons.size();
   const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
-  const auto lines = find_shadow_lines(scene, front, {{Point(0.5, 0.9, 2), 1}})[0];
+  const auto lines = find_shadow_lines(scene, front, find_coverings(scene, front), {{Point(0.5, 0.9, 2), 1}})[0];
   EXPECT_FALSE(lines.empty());
   for (const ContactLine& line : lines) {
     EXPECT_GE(std::min(line.from.x(), line.to.x()), 0.99) << "to the far side of the light";
@@ -159,7 +159,7 @@ TEST(ShadowLines, AreThrownByALightInThePlaneOfTheCeiling) {
   scene = with_quad(std::move(scene), {Point(0, 0, 2.3), Point(0, 4, 2.3), Point(4, 4, 2.3), Point(4, 0, 2.3)});
   const std::size_t count = scene.polygons.size();
   const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
-  const auto lines = find_shadow_lines(scene, front, {{Point(0.3, 0.4, 2.3), 1}})[0];
+  const auto lines = find_shadow_lines(scene, front, find_coverings(scene, front), {{Point(0.3, 0.4, 2.3), 1}})[0];
   // Two edges of the top, of 1 m each, are as much longer as they are nearer to the light.
   double longest = 0;
   for (const ContactLine& line : lines) longest = std::max(longest, (line.to - line.from).norm());

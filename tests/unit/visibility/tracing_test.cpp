@@ -3,6 +3,7 @@
 #include "patchlight/simulate.h"
 
 #include "lighting/lighting.h"
+#include "pipeline/world.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 
@@ -50,9 +51,9 @@ TEST(Tracing, BuildsOneSceneForEachSetOfBlockersInARun) {
   EXPECT_EQ(built_by([&] { simulation = simulate(scene, request); }), 3);
   ASSERT_GT(simulation.accuracy.size(), 1U);
   EXPECT_EQ(built_by([&] {
-              simulation.tracing->all_faces(scene);
-              lighting_of(scene, *simulation.tracing);
-              simulation.tracing->all_faces(scene);
+              simulation.world->all_faces();
+              simulation.world->lighting();
+              simulation.world->all_faces();
             }),
             0);
 }
@@ -62,14 +63,14 @@ TEST(Tracing, BuildsOneSceneMoreForOpaqueAndForClearFaces) {
   const Tracing tracing(scene);
   // That of all opaque faces, with which the panes come as what weakens light.
   EXPECT_EQ(built_by([&] { lighting_of(scene, tracing), lighting_of(scene, tracing); }), 2);
-  EXPECT_EQ(built_by([&] { tracing.all_faces(scene), tracing.all_faces(scene); }), 2);
+  EXPECT_EQ(built_by([&] { tracing.all_faces(), tracing.all_faces(); }), 2);
 }
 
 TEST(Tracing, HasNoClearFacesWithoutOpenings) {
   const Scene scene = furnished_room(0.5);
   const Tracing tracing(scene);
-  EXPECT_EQ(tracing.clear_faces(scene), nullptr);
-  EXPECT_EQ(tracing.opaque_faces(scene).get(), &tracing.all_faces(scene));
+  EXPECT_EQ(tracing.clear_faces(), nullptr);
+  EXPECT_EQ(tracing.opaque_faces().get(), &tracing.all_faces());
 }
 
 TEST(Tracing, SeesFromAnywhereWhatAnOccluderOfItsOwnSees) {
@@ -81,7 +82,7 @@ TEST(Tracing, SeesFromAnywhereWhatAnOccluderOfItsOwnSees) {
       const auto at = [k](int salt) { return std::fmod(0.618 * k * salt, 1.0); };
       segments.push_back({{at(1) - 0.3, at(2), at(3)}, {at(5), at(7) + 0.3, at(11)}});
     }
-    EXPECT_EQ(tracing.all_faces(scene).transmittance(segments), own.transmittance(segments));
+    EXPECT_EQ(tracing.all_faces().transmittance(segments), own.transmittance(segments));
   }
 }
 

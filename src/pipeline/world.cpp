@@ -1,0 +1,58 @@
+#include "pipeline/world.h"
+
+#include "plan/planned_scene.h"
+#include "scene/coverings.h"
+
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Computed when it is first asked for.
+class LightingOnDemand {
+ public:
+  const Lighting& of(const Scene& scene, const Tracing& tracing) {
+    std::call_once(once_, [&] { lighting_.emplace(lighting_of(scene, tracing)); });
+    return *lighting_;
+  }
+
+ private:
+  std::once_flag once_;
+  std::optional<Lighting> lighting_;
+};
+
+}  // namespace
+
+struct World::Later {
+  LightingOnDemand planned, in_one_band, for_sensors;
+};
+
+World::World(std::shared_ptr<const Scene> scene, const Plan& plan)
+    : scene_(std::move(scene)),
+      planned_(scene_as_planned(scene_, plan)),
+      for_sensors_(scene_for_sensors(scene_, plan)),
+      lamp_color_(plan.lamp_colour),
+      tracing_(*scene_, plan.coverings ? *plan.coverings : Coverings(), blockers_of(plan), reflections_of(plan)),
+      later_(std::make_unique<Later>()) {}
+
+World::~World() = default;
+
+std::shared_ptr<const World> World::in_bands(const std::vector<Eigen::Index>& bands, const Plan& plan) const {
+  return std::make_shared<const World>(std::make_shared<const Scene>(patchlight::in_bands(*planned_, bands)), plan);
+}
+
+const Lighting& World::lighting() const { return later_->planned.of(*planned_, tracing_); }
+
+const Lighting& World::lighting_in_one_band() const {
+  Eigen::Index brightest = 0;
+  lamp_color_.maxCoeff(&brightest);
+  return later_->in_one_band.of(in_one_band(*planned_, brightest), tracing_);
+}
+
+const Lighting& World::sensor_lighting() const {
+  return for_sensors_ == planned_ ? lighting() : later_->for_sensors.of(*for_sensors_, tracing_);
+}
+
+}  // namespace patchlight

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+
+#include "lighting/lighting.h"
+#include "visibility/tracing.h"
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace patchlight {
+
+/// A scene with what is derived from it for a plan, computed once: rays, and the light of luminaires, sun and sky. All
+/// steps of a run and all views of its solution share it. Immutable; safe to use from several threads.
+class World {
+ public:
+  /// `scene` as read, for a plan made of it.
+  World(std::shared_ptr<const Scene> scene, const Plan& plan);
+  ~World();
+
+  /// The same faces with some of the bands alone, in this order; in_bands() has the rules.
+  std::shared_ptr<const World> in_bands(const std::vector<Eigen::Index>& bands, const Plan& plan) const;
+
+  /// As read.
+  const Scene& scene() const { return *scene_; }
+
+  /// With the lights that the plan simulates, and with its colors: scene_as_planned().
+  const Scene& planned_scene() const { return *planned_; }
+
+  /// As sensors see it, which may stand where no patch is: scene_for_sensors().
+  const Scene& sensor_scene() const { return *for_sensors_; }
+
+  /// The rays, which the two scenes above have in common.
+  const Tracing& tracing() const { return tracing_; }
+
+  /// For rays between points of patches.
+  const Occluder& between_patches() const { return tracing_.between_patches(); }
+
+  /// For points that may lie anywhere: every polygon blocks.
+  const Occluder& all_faces() const { return tracing_.all_faces(); }
+
+  /// The light of planned_scene(). Computed at the first call, as are the others.
+  const Lighting& lighting() const;
+
+  /// The light of planned_scene() in its brightest band, where Plan::lamp_colour says that all light has one color.
+  const Lighting& lighting_in_one_band() const;
+
+  /// The light of sensor_scene().
+  const Lighting& sensor_lighting() const;
+
+ private:
+  struct Later;
+
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const Scene> planned_;
+  std::shared_ptr<const Scene> for_sensors_;
+  Spectrum lamp_color_;
+  Tracing tracing_;
+  std::unique_ptr<Later> later_;
+};
+
+}  // namespace patchlight
