@@ -112,9 +112,18 @@ std::vector<Problem> problems_with_luminaires(const Scene& scene) {
   return problems;
 }
 
-// A model is between a chair's part and a large building. Metres.
+// A model is between a part of a chair and a large building, or a site with buildings of some height. Meters.
 constexpr double smallest_plausible = 0.4;
 constexpr double largest_plausible = 150;
+constexpr double largest_plausible_height = 30;
+
+// Of a site one side is short: the height of its buildings or its terrain. Sides below a hundredth are flat.
+bool is_plausible(const Vector& sides) {
+  const double longest = sides.maxCoeff();
+  if (longest <= largest_plausible) return longest >= smallest_plausible;
+  return std::any_of(sides.begin(), sides.end(),
+                     [&](double side) { return side > 0.01 * longest && side <= largest_plausible_height; });
+}
 
 // What a room measures: the guess is the unit that comes nearest, inches and feet only if they come nearer by a factor
 // of four. Metres.
@@ -129,8 +138,9 @@ struct Unit {
 constexpr std::array<Unit, 5> units = {
     {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
 
-std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
-  if (scene.unit_stated || (size >= smallest_plausible && size <= largest_plausible)) return std::nullopt;
+std::optional<UnitGuess> guess_unit(const Scene& scene, const Vector& sides) {
+  if (scene.unit_stated || is_plausible(sides)) return std::nullopt;
+  const double size = sides.maxCoeff();
   const double in_model_units = size / scene.metres_per_unit;
   const auto distance = [&](const Unit& unit) {
     return std::abs(std::log(in_model_units * unit.metres / usual_size)) + std::log(unit.handicap);
@@ -144,8 +154,9 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, double size) {
                        " m, the size of a room or a building"};
 }
 
-std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, double size) {
-  if (scene.unit_stated || (size >= smallest_plausible && size <= largest_plausible)) return {};
+std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, const Vector& sides) {
+  if (scene.unit_stated || is_plausible(sides)) return {};
+  const double size = sides.maxCoeff();
   const std::string advice =
       guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
                   ": read.metres_per_unit=" + shortest(guess->metres_per_unit)
@@ -253,8 +264,8 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
 }
 
 std::vector<Problem> problems_with_size(const Scene& scene) {
-  const double size = main_bounds(scene).sizes().maxCoeff();
-  std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, size), size);
+  const Vector sides = main_bounds(scene).sizes();
+  std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, sides), sides);
   for (Problem& problem : problems_with_luminaires(scene)) problems.push_back(std::move(problem));
   return problems;
 }
@@ -300,14 +311,14 @@ SceneReport survey(const Scene& scene) {
   for (const RimEdge& edge : shells.rim)
     report.open_edge_length += (scene.vertices[edge.to] - scene.vertices[edge.from]).norm();
 
-  const double size = main_bounds(scene).sizes().maxCoeff();
-  report.unit_guess = guess_unit(scene, size);
+  const Vector sides = main_bounds(scene).sizes();
+  report.unit_guess = guess_unit(scene, sides);
   report.usable = has_lamp(scene);
   report.problems = scene.problems;
   const auto add = [&report](const std::vector<Problem>& problems) {
     report.problems.insert(report.problems.end(), problems.begin(), problems.end());
   };
-  add(problems_of_size(scene, report.unit_guess, size));
+  add(problems_of_size(scene, report.unit_guess, sides));
   add(problems_with_luminaires(scene));
   add(problems_with_sensors(scene));
   add(problems_with_reflectance(report.materials));

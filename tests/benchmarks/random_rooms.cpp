@@ -227,7 +227,7 @@ std::vector<Reference> find_references(const Simulation& simulation, const std::
   std::vector<Place> missing;
   for (const Place& place : places)
     if (file.find(place_name(place)) == nullptr) missing.push_back(place);
-  const PathOptions by{.follows_reflections = reflections_of(simulation.plan) == Reflections::followed};
+  const PathOptions by{.follows_reflections = simulation.world->tracing().reflections() == Reflections::followed};
   const std::vector<Reference> traced =
       trace(simulation.world->sensor_scene(), simulation.plan.sides, missing, by, options.paths);
   for (std::size_t k = 0; k < missing.size(); ++k) file.add(place_name(missing[k]), traced[k]);

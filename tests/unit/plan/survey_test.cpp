@@ -69,6 +69,16 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
   EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
 }
 
+TEST(Survey, DoubtsNoUnitOfASiteWithBuildingsOfSomeHeight) {
+  const auto on_lawn = [](double scale) {
+    const Scene room = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(scale)));
+    const double far = 80 * scale;
+    return with_polygon(room, {Point(-far, -far, 0), Point(far, -far, 0), Point(far, far, 0), Point(-far, far, 0)});
+  };
+  EXPECT_FALSE(has(survey_of(on_lawn(1)), ProblemKind::implausible_size));
+  EXPECT_TRUE(has(survey_of(on_lawn(100)), ProblemKind::implausible_size));
+}
+
 TEST(Survey, DoubtsNoUnitThatTheFileStates) {
   Scene tiny = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
   tiny.unit_stated = true;
