@@ -1,5 +1,5 @@
 # Installation, and the Debian packages that `cpack` makes: patchlight has the tool, libpatchlight-dev the library,
-# python3-patchlight the module for Python, patchlight-doc the pages of docs/.
+# python3-patchlight the module for Python, patchlight-doc the pages of docs/. What is not built is left out.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -14,36 +14,57 @@ endfunction()
 string(TIMESTAMP patchlight_packed "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(cmake/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
 patchlight_compress(${PROJECT_BINARY_DIR}/changelog ${PROJECT_BINARY_DIR}/changelog.gz)
-file(GLOB patchlight_manuals CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/man/*.1)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${patchlight_manuals})
-set(patchlight_compressed_manuals)
-foreach(manual IN LISTS patchlight_manuals)
-  get_filename_component(name ${manual} NAME)
-  patchlight_compress(${manual} ${PROJECT_BINARY_DIR}/${name}.gz)
-  list(APPEND patchlight_compressed_manuals ${PROJECT_BINARY_DIR}/${name}.gz)
-endforeach()
-
 set(patchlight_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/patchlight)
-install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
-install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
-install(FILES ${patchlight_compressed_manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
-# The pages that `patchlight help TOPIC` prints.
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight/md COMPONENT tool
-        FILES_MATCHING PATTERN *.md PATTERN benchmarks EXCLUDE PATTERN developer EXCLUDE PATTERN figures EXCLUDE
-        PATTERN man EXCLUDE PATTERN notebooks EXCLUDE)
-# The IFC reader's script with web-ifc, of which Node.js needs three files, for all that reads scenes.
-set(patchlight_ifc ${PROJECT_SOURCE_DIR}/src/input/ifc)
-set(patchlight_ifc_destination ${CMAKE_INSTALL_DATADIR}/patchlight/ifc)
-install(FILES ${patchlight_ifc}/read_ifc.mjs ${patchlight_ifc}/package.json DESTINATION ${patchlight_ifc_destination} COMPONENT tool)
-set(patchlight_web_ifc ${patchlight_ifc}/node_modules/web-ifc)
-install(FILES ${patchlight_web_ifc}/package.json ${patchlight_web_ifc}/web-ifc-api-node.js ${patchlight_web_ifc}/web-ifc-node.wasm
-        DESTINATION ${patchlight_ifc_destination}/node_modules/web-ifc COMPONENT tool OPTIONAL)
-install(FILES ${patchlight_web_ifc}/LICENSE.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight
-        RENAME web-ifc.copyright.md COMPONENT tool OPTIONAL)
-install(TARGETS patchlight_core patchlight_io EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
-install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
+if(PATCHLIGHT_TOOL)
+  file(GLOB patchlight_manuals CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/man/*.1)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${patchlight_manuals})
+  set(patchlight_compressed_manuals)
+  foreach(manual IN LISTS patchlight_manuals)
+    get_filename_component(name ${manual} NAME)
+    patchlight_compress(${manual} ${PROJECT_BINARY_DIR}/${name}.gz)
+    list(APPEND patchlight_compressed_manuals ${PROJECT_BINARY_DIR}/${name}.gz)
+  endforeach()
+  install(TARGETS patchlight_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+  install(FILES docs/patchlight.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME patchlight COMPONENT tool)
+  install(FILES ${patchlight_compressed_manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+  # The pages that `patchlight help TOPIC` prints.
+  install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight/md COMPONENT tool
+          FILES_MATCHING PATTERN *.md PATTERN benchmarks EXCLUDE PATTERN developer EXCLUDE PATTERN figures EXCLUDE
+          PATTERN man EXCLUDE PATTERN notebooks EXCLUDE)
+endif()
+if(PATCHLIGHT_IO)
+  # The IFC reader's script with web-ifc, of which Node.js needs three files, for all that reads scenes.
+  set(patchlight_ifc ${PROJECT_SOURCE_DIR}/src/input/ifc)
+  set(patchlight_ifc_destination ${CMAKE_INSTALL_DATADIR}/patchlight/ifc)
+  install(FILES ${patchlight_ifc}/read_ifc.mjs ${patchlight_ifc}/package.json DESTINATION ${patchlight_ifc_destination} COMPONENT tool)
+  set(patchlight_web_ifc ${patchlight_ifc}/node_modules/web-ifc)
+  install(FILES ${patchlight_web_ifc}/package.json ${patchlight_web_ifc}/web-ifc-api-node.js ${patchlight_web_ifc}/web-ifc-node.wasm
+          DESTINATION ${patchlight_ifc_destination}/node_modules/web-ifc COMPONENT tool OPTIONAL)
+  install(FILES ${patchlight_web_ifc}/LICENSE.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight
+          RENAME web-ifc.copyright.md COMPONENT tool OPTIONAL)
+endif()
+install(TARGETS ${patchlight_libraries} EXPORT patchlightTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+if(NOT PATCHLIGHT_IO)
+  set(patchlight_no_headers PATTERN input EXCLUDE PATTERN output EXCLUDE PATTERN patchlight.h EXCLUDE)
+endif()
+install(DIRECTORY include/patchlight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library ${patchlight_no_headers})
 install(EXPORT patchlightTargets NAMESPACE patchlight:: DESTINATION ${patchlight_config_folder} COMPONENT library)
-string(REPLACE ";" " " PATCHLIGHT_VTK_COMPONENTS "${patchlight_vtk_components}")
+# The packages of a target as lines of the file that find_package(patchlight) reads.
+function(patchlight_find_lines result)
+  set(lines ${ARGN})
+  list(TRANSFORM lines REPLACE "^.+$" "find_dependency(\\0)")
+  list(JOIN lines "\n" lines)
+  set(${result} "${lines}" PARENT_SCOPE)
+endfunction()
+patchlight_find_lines(PATCHLIGHT_FIND_CORE ${patchlight_core_packages})
+if(PATCHLIGHT_IO)
+  patchlight_find_lines(PATCHLIGHT_FIND_IO ${patchlight_io_packages})
+  foreach(module IN LISTS patchlight_io_modules)
+    string(REGEX REPLACE ">=.*" "" name ${module})
+    string(APPEND PATCHLIGHT_FIND_IO "\npkg_check_modules(${name} REQUIRED IMPORTED_TARGET ${module})")
+  endforeach()
+  string(REPLACE "\n" "\n  " PATCHLIGHT_FIND_IO "  ${PATCHLIGHT_FIND_IO}")
+endif()
 configure_package_config_file(cmake/patchlightConfig.cmake.in ${PROJECT_BINARY_DIR}/patchlightConfig.cmake
                               INSTALL_DESTINATION ${patchlight_config_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/patchlightConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -52,7 +73,7 @@ install(FILES ${PROJECT_BINARY_DIR}/patchlightConfig.cmake ${PROJECT_BINARY_DIR}
 foreach(package_of_component patchlight:tool libpatchlight-dev:library patchlight-doc:doc python3-patchlight:python)
   string(REGEX MATCH "^(.*):(.*)$" both ${package_of_component})
   set(documents ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_1})
-  if(CMAKE_MATCH_2 STREQUAL python AND NOT PATCHLIGHT_PYTHON)
+  if((CMAKE_MATCH_2 STREQUAL python AND NOT PATCHLIGHT_PYTHON) OR (CMAKE_MATCH_2 STREQUAL tool AND NOT PATCHLIGHT_TOOL))
     continue()
   endif()
   install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT ${CMAKE_MATCH_2})
@@ -81,7 +102,10 @@ endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL tool library doc)
+set(CPACK_COMPONENTS_ALL library doc)
+if(PATCHLIGHT_TOOL)
+  list(PREPEND CPACK_COMPONENTS_ALL tool)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME patchlight)
@@ -97,8 +121,11 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "patchlight")  # has the reader of IFC
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and what CMake needs to find it:
 scenes, form factors, solvers, error bars and what is seen of a solution.")
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-    "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev, libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libstb-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev")
+if(PATCHLIGHT_IO)
+  string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
+         ", libtinyobjloader-dev, libassimp-dev, libtinygltf-dev, libstb-dev, libtomlplusplus-dev, nlohmann-json3-dev, libpugixml-dev, libdraco-dev, libmeshoptimizer-dev, libssl-dev, zlib1g-dev, libcairo2-dev, libopenexr-dev, pkg-config, libvtk9-dev")
+endif()
 set(CPACK_DEBIAN_DOC_PACKAGE_NAME patchlight-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)

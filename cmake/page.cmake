@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
-# Puts the page's own files into one HTML file, with the licence of three.js, and three.js with its controls into another.
-# usage: cmake -D WEB=src/page/web -D THREE=/usr/share/javascript/three -D COPYRIGHT=/usr/share/doc/libjs-three/copyright -D PAGE=FILE -D SCRIPTS=FILE -P page.cmake
+# Writes the source file that has the page in it: the page's own files as one HTML text, with the licence of three.js,
+# and three.js with its controls as another text.
+# usage: cmake -D WEB=src/page/web -D THREE=/usr/share/javascript/three -D COPYRIGHT=/usr/share/doc/libjs-three/copyright -D OUTPUT=FILE.cpp -P page.cmake
 
 file(READ ${WEB}/page.html page)
 file(READ ${WEB}/page.css style)
@@ -29,5 +30,19 @@ set(licence "three.js, https://threejs.org/\n${holders}\n\n${licence}")
 string(REPLACE "@STYLE@" "${style}" page "${page}")
 string(REPLACE "@LICENCE@" "${licence}" page "${page}")
 string(REPLACE "@SCRIPT@" "${script}" page "${page}")
-file(WRITE ${PAGE} "${page}")
-file(WRITE ${SCRIPTS} "${three}\n${controls}")
+set(scripts "${three}\n${controls}")
+
+# The function `name` that returns `text`, as a raw string: a compiler reads it faster than an array of bytes.
+function(write_function name text)
+  string(FIND "${text}" ")PAGE\"" at)
+  if(NOT at EQUAL -1)
+    message(FATAL_ERROR "${name}: the text has the mark that ends a raw string; choose another in cmake/page.cmake")
+  endif()
+  file(APPEND ${OUTPUT} "static constexpr char ${name}_text[] = R\"PAGE(${text})PAGE\";\n"
+                        "std::string_view ${name}() { return {${name}_text, sizeof ${name}_text - 1}; }\n\n")
+endfunction()
+
+file(WRITE ${OUTPUT} "#include \"page/page_parts.h\"\n\nnamespace patchlight {\n\n")
+write_function(page_template "${page}")
+write_function(page_scripts "${scripts}")
+file(APPEND ${OUTPUT} "}  // namespace patchlight\n")

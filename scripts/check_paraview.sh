@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Opens a result and a series in ParaView, applies scripts/paraview_view.py, takes screenshots and compares what ParaView
 # finds with the report. Fetches ParaView into FOLDER when it is not there: about 75 MB to download, 600 MB on disk.
-# usage: scripts/check_paraview.sh [FOLDER]    default: build/paraview; needs the tool in build/src
+# usage: scripts/check_paraview.sh [FOLDER [TOOL]]    default: build/paraview build/src/patchlight
 # The script refuses a FOLDER that holds other files than its own.
 # Without ParaView and a network it prints a note and succeeds, unless CI is set.
 set -euo pipefail
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$(realpath -m "${1:-$checkout/build/paraview}")
+tool=$(realpath -m "${2:-$checkout/build/src/patchlight}")
 cd "$checkout"
 out=build/paraview_check
 mark=.made_by_check_paraview
@@ -63,7 +64,7 @@ complete || install paraview || { update_lists && install paraview; } || give_up
 
 rm -rf "$out"
 mkdir -p "$out"
-build/src/patchlight solve meshes/cornell_box.obj --up y --quiet --patches 8000 --json "$out/cornell_box.json" \
+"$tool" solve meshes/cornell_box.obj --up y --quiet --patches 8000 --json "$out/cornell_box.json" \
   -o "$out/cornell_box.vtp" -o "$out/cornell_box.ply" -o "$out/cornell_box.glb" --series "$out/cornell_box.pvd"
 # ParaView wants an X server, even for pictures that nobody sees. Another one that starts at the same moment can take its
 # number, and ParaView then aborts: that is tried again. The script's own verdict of faults is exit code 1.

@@ -1,9 +1,12 @@
 """A run that is killed before any of its calls that change a folder leaves every output old or whole and new."""
 import json
 import os
+import pathlib
 import re
+import shutil
 import signal
 import subprocess
+import tempfile
 import unittest
 
 from support import MATERIALS, ROOM, TOOL, ToolTest
@@ -47,7 +50,32 @@ class Kills(ToolTest):
         self.fail(f"more than {MOST_CALLS} calls")
 
     def left(self):
-        return [path.name for path in self.folder.rglob(".patchlight-*")]
+        return list(self.folder.glob(".patchlight-*"))
+
+    def copy_of_folder(self):
+        """A copy of all files, elsewhere."""
+        copy = self.empty_folder()
+        shutil.copytree(self.folder, copy, dirs_exist_ok=True)
+        return copy
+
+    def empty_folder(self):
+        folder = tempfile.TemporaryDirectory(prefix="patchlight-aside-")
+        self.addCleanup(folder.cleanup)
+        return pathlib.Path(folder.name)
+
+    def put_back(self, copy, aside):
+        """All files as they are in the copy. What a killed run has left goes aside."""
+        for path in self.left():
+            shutil.move(path, aside)
+        shutil.rmtree(self.folder)
+        shutil.copytree(copy, self.folder)
+
+    def assert_next_run_removes_what_is_left(self, aside, command):
+        """One run removes what all killed ones have left."""
+        shutil.copytree(aside, self.folder, dirs_exist_ok=True)
+        self.assertGreater(len(self.left()), 1)
+        self.run_whole(command)
+        self.assertEqual(self.left(), [])
 
     def test_files_are_old_or_new_and_renamed_in_one_go(self):
         self.run_whole(solve("1,1,1"))
@@ -55,6 +83,7 @@ class Kills(ToolTest):
         for age, light in (("new", "3,3,3"), ("old", "2,2,2")):
             self.run_whole(solve(light))
             facts[age] = {name: self.fact(name) for name in FILES}
+        old, aside = self.copy_of_folder(), self.empty_folder()
         found = set()
         for call in self.killed_runs(solve("3,3,3")):
             ages = []
@@ -63,10 +92,10 @@ class Kills(ToolTest):
                 self.assertIn(now, (facts["old"][name], facts["new"][name]), f"{name} at call {call}")
                 ages.append("new" if now == facts["new"][name] else "old")
             found.add(tuple(ages))
-            self.run_whole(solve("2,2,2"))
-            self.assertEqual(self.left(), [])
+            self.put_back(old, aside)
         # Before, between and after the renames, which nothing else comes between.
         self.assertEqual(found, {("old",) * 3, ("new", "old", "old"), ("new", "new", "old"), ("new",) * 3})
+        self.assert_next_run_removes_what_is_left(aside, solve("2,2,2"))
 
     def fact(self, name):
         """What a file says of the light that it was solved with."""
@@ -86,13 +115,14 @@ class Kills(ToolTest):
         for samples in ("8", "4"):
             self.run_whole(form_factors(samples))
             facts.append(self.bytes_of_folder())
+        old, aside = self.copy_of_folder(), self.empty_folder()
         ages = set()
         for call in self.killed_runs(form_factors("8")):
             self.assertIn(self.bytes_of_folder(), facts, f"at call {call}")
             ages.add(facts.index(self.bytes_of_folder()))
-            self.run_whole(form_factors("4"))
-            self.assertEqual(self.left(), [])
+            self.put_back(old, aside)
         self.assertEqual(ages, {0, 1})
+        self.assert_next_run_removes_what_is_left(aside, form_factors("4"))
 
     def bytes_of_folder(self):
         return {file.name: file.read_bytes() for file in (self.folder / "stored").iterdir() if file.suffix == ".npy"}

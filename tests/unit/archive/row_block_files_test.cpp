@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <set>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace patchlight::row_block_files_test {
@@ -28,7 +29,7 @@ struct Folder {
   // Tests run side by side.
   std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) /
-      (std::string("row_blocks_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+      ("row_blocks_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST(RowBlockFiles, GiveBackWhatWasKept) {

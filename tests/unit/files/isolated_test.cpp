@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <sys/syscall.h>
 #include <unistd.h>
 #include <vector>
@@ -136,7 +137,7 @@ bool has_landlock() {
 // Without Landlock files are as open as before.
 TEST(OutputIsolated, OpensNoConnectionsAndWritesNoFiles) {
   EXPECT_EQ(output("/usr/bin/python3 -c 'import socket; socket.socket()' 2>/dev/null || echo none"), "none\n");
-  const std::string file = testing::TempDir() + "patchlight_isolated_test";
+  const std::string file = testing::TempDir() + "patchlight_isolated_test_" + std::to_string(getpid());
   std::ofstream(file) << "secret";
   const std::string found =
       output("echo x 2>/dev/null >" + file + " || echo none; cat " + file + " 2>/dev/null; echo end");
