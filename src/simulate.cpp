@@ -19,7 +19,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -77,7 +76,7 @@ Simulation simulate(const Scene& scene, const Request& request, const Observer& 
   // 3. What rays need: which polygons lie on others, and what stands between patches.
   const auto tracing = std::make_shared<const Tracing>(scene, find_coverings(scene, plan.sides), blockers_of(plan),
                                                        reflections_of(plan));
-  const std::vector<std::string> notes = notes_on_run(scene, *tracing, plan);
+  const Diagnostics notes = notes_on_run(scene, *tracing, plan);
   const Run run{lit, request, plan, notes, tracing, with, observer};
   const std::vector<LightColour> colours = light_colours(run);
 

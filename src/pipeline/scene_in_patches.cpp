@@ -18,8 +18,7 @@ SceneInPatches scene_in_patches(const Scene& scene, Request request) {
                                                  Occluder::Blockers::inside_hull, reflections_of(plan));
   PatchMesh mesh = open_patches(scene, plan, plan.max_edge, tracing->between_patches());
   require_memory(mesh.size(), request, plan);
-  std::vector<std::string> notes;
-  for (const Problem& problem : problems_with_overlaps(scene, tracing->coverings())) notes.push_back(problem.what);
+  Diagnostics notes = problems_with_overlaps(scene, tracing->coverings());
   return {std::move(request), std::move(plan), std::move(mesh), std::move(tracing), std::move(notes)};
 }
 

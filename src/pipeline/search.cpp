@@ -261,9 +261,11 @@ bool Search::may_go_by_rays(const Plan& plan) const {
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {
-  notes_.push_back("form factors of more than " + std::to_string(steps_.back().patches) +
-                   " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
-                   "takes do not fit into the memory");
+  notes_.push_back(
+      {DiagnosticCode::rows_of_rays,
+       "form factors of more than " + std::to_string(steps_.back().patches) +
+           " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
+           "takes do not fit into the memory"});
   return by_rays(plan);
 }
 
@@ -305,7 +307,8 @@ std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accur
 std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
   if (steps_.size() > 1) return std::nullopt;
   SecondMesh next = second_mesh(run_, solved, steps_.back());
-  if (!next.note.empty()) (next.mesh ? notes_ : solved.simulation.notes).push_back(std::move(next.note));
+  Diagnostics& notes = next.mesh ? notes_ : solved.simulation.notes;
+  notes = joined({std::move(notes), std::move(next.notes)});
   if (!next.mesh) return std::nullopt;
   return remembered(std::move(*next.mesh), true);
 }

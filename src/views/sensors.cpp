@@ -18,7 +18,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -147,10 +146,9 @@ bool has_daylight_factors(const Scene& scene) { return only_overcast_sky(scene).
 SensorView read_sensors(const Scene& scene, const Simulation& simulation, const Observer& observer) {
   const std::vector<SensorPlace> places =
       place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
-  std::vector<std::string> warnings = doubtful_sensors(scene, places);
-  for (std::string& warning : sensors_far_off(scene)) warnings.push_back(std::move(warning));
-  for (std::string& warning : sensors_close_to_pictures(scene, simulation.mesh)) warnings.push_back(std::move(warning));
-  return {readings_at(places, scene, simulation, observer), std::move(warnings)};
+  return {readings_at(places, scene, simulation, observer),
+          joined({doubtful_sensors(scene, places), sensors_far_off(scene),
+                  sensors_close_to_pictures(scene, simulation.mesh)})};
 }
 
 }  // namespace patchlight

@@ -263,7 +263,7 @@ TEST(SensorsFarOff, AreThoseFartherAwayThanTheModelIsLong) {
       {.name = "near", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}, {Point(2.7, 0, 0), Vector::UnitZ()}}}};
   EXPECT_TRUE(sensors_far_off(scene).empty());
   scene.sensors[0].sensors.push_back({Point(500, 500, 500), Vector::UnitZ()});
-  const std::vector<std::string> warnings = sensors_far_off(scene);
+  const std::vector<std::string> warnings = texts_of(sensors_far_off(scene));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("1 sensor lies farther from the model"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("sensor 3"), std::string::npos) << warnings[0];
