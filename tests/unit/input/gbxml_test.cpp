@@ -90,7 +90,7 @@ TEST_F(Gbxml, OpeningsAreCutOutOfTheirSurface) {
   EXPECT_NEAR(area_of(scene, "door"), 1, 1e-12);
   EXPECT_TRUE(scene.up_stated);
   EXPECT_EQ(scene.up, Vector::UnitZ());
-  for (const Diagnostic& problem : problems_of(scene)) ADD_FAILURE() << problem.text;
+  for (const Diagnostic& problem : test::problems_of(scene)) ADD_FAILURE() << problem.text;
 }
 
 TEST_F(Gbxml, LengthsHaveTheUnitOfTheFile) {

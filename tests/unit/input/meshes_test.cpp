@@ -21,7 +21,7 @@ int count(const std::vector<std::uint8_t>& kept) { return static_cast<int>(std::
 
 TEST(Meshes, EveryModelIsReadWithoutRemarks) {
   for (const char* name : {"cornell_box", "furnace_cube", "parallel_squares", "perpendicular_squares", "two_rooms"}) {
-    EXPECT_TRUE(notes_of(mesh(name)).empty()) << name;
+    EXPECT_TRUE(test::notes_of(mesh(name)).empty()) << name;
   }
 }
 

@@ -217,7 +217,7 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   // The Ka of a material with a Ke needs no mention.
   write("m.mtl", "newmtl bare\nKd 0 0 0\nKa 2 2 2\nKe 1 1 1\n");
   const Scene lit = read_scene(write("m.obj", "mtllib m.mtl\n" + square + "usemtl bare\nf 1 2 3\n"));
-  EXPECT_TRUE(notes_of(lit).empty());
+  EXPECT_TRUE(test::notes_of(lit).empty());
   EXPECT_TRUE(lit.lamp_hints.empty());
 }
 
@@ -328,7 +328,7 @@ TEST_F(ReadScene, FindsALibraryBesideTheModelWhereverItsPathLeads) {
   for (const char* name : {"sub/b.mtl", "sub\\b.mtl", "./sub/b.mtl"}) {
     const Scene scene = read_scene(write("m.obj", std::string("mtllib ") + name + rest));
     EXPECT_TRUE(is_lamp(scene, 0)) << name;
-    EXPECT_TRUE(problems_of(scene).empty()) << name;
+    EXPECT_TRUE(test::problems_of(scene).empty()) << name;
   }
 }
 
@@ -341,7 +341,7 @@ TEST_F(ReadScene, UndefinedMaterialsAreGreyKeepTheirNamesAndAreReported) {
   EXPECT_TRUE((scene.materials[0].reflectance == 0.5).all());
   EXPECT_TRUE((scene.materials[0].exitance == 1).all()) << "--set knows the name";
   EXPECT_EQ(scene.materials[1].name, "default") << "usemtl without a name";
-  ASSERT_EQ(problems_of(scene).size(), 3U);
+  ASSERT_EQ(test::problems_of(scene).size(), 3U);
   EXPECT_EQ(scene.diagnostics[0].code, DiagnosticCode::missing_material_file);
   EXPECT_TRUE(contains(scene.diagnostics[0].text, "gone.mtl"));
   EXPECT_EQ(scene.diagnostics[1].code, DiagnosticCode::unknown_material);
@@ -398,7 +398,7 @@ TEST_F(ReadScene, TabsNamesInAnyAlphabetAndSpacesDoNotMatter) {
   EXPECT_EQ(scene.materials.at(0).name, "wei\xC3\x9F");
   EXPECT_EQ(scene.materials[0].reflectance[0], 0.75);
   EXPECT_EQ(scene.groups.at(scene.polygons.at(0).group), "W\xC3\xA4nde");
-  EXPECT_TRUE(problems_of(scene).empty());
+  EXPECT_TRUE(test::problems_of(scene).empty());
 }
 
 TEST_F(ReadScene, AFaceMayStandAboveItsVertices) {

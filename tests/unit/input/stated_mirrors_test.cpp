@@ -62,7 +62,7 @@ TEST_F(StatedMirrors, AreSmoothWithAnIlluminationThatReflects) {
     expect_mirror(scene.materials[1], rgb(0.9, 0.8, 0.7), rgb(0.1, 0.1, 0.1));
     expect_matt(scene.materials[0]);
     EXPECT_TRUE(scene.unsimulated.empty());
-    EXPECT_EQ(codes_of(notes_of(scene)), std::vector{DiagnosticCode::read_as_mirror});
+    EXPECT_EQ(test::codes_of(test::notes_of(scene)), std::vector{DiagnosticCode::read_as_mirror});
   }
 }
 

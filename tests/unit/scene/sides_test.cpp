@@ -99,7 +99,7 @@ TEST(KeptSides, FrontAndBothDoNotLookAtTheScene) {
   const KeptSides both = kept_sides(scene, Sides::both);
   expect_all(both, 0, 7, both_sides);
   EXPECT_TRUE(both.emit_from_back);
-  EXPECT_EQ(codes_of(both.notes), std::vector{DiagnosticCode::both_sides}) << "the doubled flux is reported";
+  EXPECT_EQ(test::codes_of(both.notes), std::vector{DiagnosticCode::both_sides}) << "the doubled flux is reported";
 }
 
 TEST(KeptSides, ASolidWithoutALampKeepsItsOuterSides) {
@@ -136,7 +136,7 @@ TEST(KeptSides, ASideWithNothingBeforeItIsDark) {
 TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   const KeptSides outward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 0.2}));
   expect_all(outward, 0, 6, back_only);
-  EXPECT_TRUE(has(outward.notes, DiagnosticCode::outward_normals));
+  EXPECT_TRUE(test::has(outward.notes, DiagnosticCode::outward_normals));
   const KeptSides inward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2}));
   expect_all(inward, 0, 6, front_only);
 }
@@ -164,7 +164,7 @@ TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
 
 // A room with a lamp under the sky: nobody is left to wonder why daylight changes nothing in it.
 TEST(KeptSides, SaysWhereNoDaylightGetsIn) {
-  const auto says_so = [](const Scene& scene) { return has(automatic(scene).notes, DiagnosticCode::sealed_solid); };
+  const auto says_so = [](const Scene& scene) { return test::has(automatic(scene).notes, DiagnosticCode::sealed_solid); };
   Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2});
   EXPECT_FALSE(says_so(scene)) << "there is none";
   scene.sky = Sky{};
