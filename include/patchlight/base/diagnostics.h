@@ -19,14 +19,14 @@ enum class DiagnosticCode : std::uint8_t {
   missing_material_file,  ///< an mtllib that is nowhere
   unknown_material,       ///< a usemtl that no material file defines
   self_intersecting,      ///< a face whose outline crosses itself
-  // Warnings: the answer may differ from what is meant.
+  // Warnings: the answer may differ from the intention.
   left_out,             ///< the scene lacks whole objects, light sources or more than 1 % of the area of a file
   implausible_size,     ///< the unit is probably another, or sizes and numbers do not go together
   guessed_up,           ///< the upright axis is a guess, and light or sensors depend on it
   full_reflectance,     ///< a reflectance of 1: nothing is absorbed
   moved_material_file,  ///< an mtllib found at another place than it names
   no_material,          ///< faces before any usemtl
-  turned_faces,         ///< faces that are turned against their neighbours
+  turned_faces,         ///< faces that are turned against their neighbors
   non_planar,           ///< faces whose corners do not lie in one plane
   duplicate_faces,      ///< a face that is there already, with the same front
   overlapping_faces,    ///< faces that lie in part under another in the same plane
@@ -54,7 +54,7 @@ enum class DiagnosticCode : std::uint8_t {
   north_of_file,        ///< the direction of north that a file states
   missing_sensors,      ///< rooms without sensors, or with sensors over a part of the floor
   // Notes on the plan and the run.
-  unlit_sides,            ///< sides that do not take part, as no light reaches them
+  unlit_sides,            ///< sides that are excluded, as no light reaches them
   sealed_solid,           ///< closed solids around lamps that daylight does not enter
   outward_normals,        ///< closed solids around lamps whose inner sides are backs
   both_sides,             ///< both sides of faces emit, or share a form factor
@@ -74,8 +74,8 @@ enum class DiagnosticCode : std::uint8_t {
   checkpoint              ///< rows taken from a checkpoint, or kept in one
 };
 
-/// An error loses something that the model means; a warning may make the solution wrong; a remark tells of a harmless
-/// defect; a note says what patchlight assumes or does.
+/// An error loses something that the model means; a warning may make the solution wrong; a remark names a harmless
+/// defect; a note states an assumption or a decision.
 enum class Severity : std::uint8_t { error, warning, remark, note };
 
 /// A face as it stands in the model.
@@ -89,7 +89,7 @@ struct ModelFace {
 /// One finding.
 struct Diagnostic {
   DiagnosticCode code = DiagnosticCode::no_lamp;
-  std::string text;                   ///< one sentence: what was found, how many, and what is done about it
+  std::string text;                   ///< one sentence: the finding, how many, and the action
   std::size_t count = 1;              ///< of faces, edges, vertices, files, materials or luminaires
   std::vector<ModelFace> faces = {};  ///< those concerned, in the model's order; may be empty
   double area = 0;                    ///< m^2 of the faces, as far as their corners are known

@@ -347,7 +347,7 @@ class GltfCollector {
     };
     note(DiagnosticCode::assumed_material,
          "parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
-    note(DiagnosticCode::simplified_part, "parts with vertex colours, which are ignored: ", colored_);
+    note(DiagnosticCode::simplified_part, "parts with vertex colors, which are ignored: ", colored_);
     scene_.texture_maps = mapped_.maps();
     scene_.diagnostics = joined({std::move(scene_.diagnostics), mapped_.notes()});
     return left_out_.on(std::move(scene_));

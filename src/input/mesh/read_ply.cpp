@@ -245,7 +245,7 @@ Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
     scene.vertices.emplace_back(scene.metres_per_unit * point);
   }
   if (find(element, {"red", "diffuse_red"}))
-    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colours of the vertices are ignored"});
+    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colors of the vertices are ignored"});
   return scene;
 }
 
@@ -276,7 +276,7 @@ Scene with_faces(Scene scene, const PlyElement& element, PlyBody& body) {
     }
   }
   if (find(element, {"red", "diffuse_red"}))
-    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colours of the faces are ignored"});
+    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colors of the faces are ignored"});
   return left_out.on(std::move(scene));
 }
 

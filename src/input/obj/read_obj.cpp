@@ -398,7 +398,7 @@ Diagnostics notes_on(const ObjScan& scan, const ObjPalette& palette) {
   Diagnostics notes;
   if (scan.colored_vertices > 0)
     notes.push_back(
-        {DiagnosticCode::simplified_part, "colours of vertices, ignored: " + std::to_string(scan.colored_vertices)});
+        {DiagnosticCode::simplified_part, "colors of vertices, ignored: " + std::to_string(scan.colored_vertices)});
   return joined({std::move(notes), notes_on_ignored(palette.materials)});
 }
 

@@ -185,7 +185,7 @@ TEST_F(Formats, PlyPassesOverWhatIsNotGeometry) {
   EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 1));
   EXPECT_EQ(scene.polygons[0].line, 21U);
   EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U) << "light";
-  EXPECT_TRUE(any_contains(scene.diagnostics, "colours of the vertices"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "colors of the vertices"));
 }
 
 TEST_F(Formats, OffMayHaveCommentsColorsAndCountsBesideTheKeyWord) {

@@ -200,7 +200,7 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   const Scene scene = read_scene(write("m.obj", text));
   for (const char* note :
        {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted, leaves", "picture) is ignored: leaves",
-        "matt: mirror", "texture): bare", "colours of vertices, ignored: 1"}) {
+        "matt: mirror", "texture): bare", "colors of vertices, ignored: 1"}) {
     EXPECT_TRUE(any_contains(scene.diagnostics, note)) << note;
   }
   EXPECT_EQ(number_of(scene, DiagnosticCode::little_left_out), 3U) << "two lines, one point";
