@@ -67,7 +67,7 @@ Diagnostics chosen(Diagnostics all, bool (*is_chosen)(DiagnosticCode)) {
   return all;
 }
 
-Diagnostics joined(std::vector<Diagnostics> lists) {
+Diagnostics merged(std::vector<Diagnostics> lists) {
   Diagnostics all;
   for (Diagnostics& list : lists) std::move(list.begin(), list.end(), std::back_inserter(all));
   return all;

@@ -74,7 +74,7 @@ struct Written {
 // Of either kind of form factors.
 template <class Found>
 Diagnostics notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
-  Diagnostics all = joined({remarks_of(scene), found.plan.sides.notes, found.plan.notes, found.notes});
+  Diagnostics all = merged({remarks_of(scene), found.plan.sides.notes, found.plan.notes, found.notes});
   if (found.request.mesh.sides != arguments.request.mesh.sides)
     all.push_back({DiagnosticCode::unlit_sides, "no light source, so --sides auto uses the front sides"});
   return all;
@@ -91,7 +91,7 @@ Written write_pairs(const FormFactorArguments& arguments, const Scene& scene, co
     write_form_factors(arguments.output, {scene, found, groups, arguments.command_line, arguments.format}, observer);
   }
   Written written{notes_on(arguments, scene, found), summary(scene, found)};
-  if (!groups.empty()) written.notes = joined({std::move(written.notes), note_on_groups(found.plan.sides)});
+  if (!groups.empty()) written.notes = merged({std::move(written.notes), note_on_groups(found.plan.sides)});
   for (const GroupFactors& table_of : groups) written.summary += table(table_of);
   return written;
 }

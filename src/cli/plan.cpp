@@ -89,7 +89,7 @@ ExitCode plan(const PlanArguments& arguments) {
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
-  print_notes(joined({remarks_of(scene), plan.sides.notes, plan.notes}), false);
+  print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"

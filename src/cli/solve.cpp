@@ -363,7 +363,7 @@ void print_results(const SolveArguments& arguments, const Results& results,
                                   how_to_know_errors(arguments, results.report.solution.unfinished));
   if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
   std::cout << files_line(written) << summary_of_run(results.report, is_verbose) << std::flush;
-  const Diagnostics all = joined({of_checkpoint, notes(results.scene, results.simulation)});
+  const Diagnostics all = merged({of_checkpoint, notes(results.scene, results.simulation)});
   print_notes(all, false, is_verbose ? all.size() : most_notes);
 }
 

@@ -238,7 +238,7 @@ std::string effects_line(const std::vector<Decision>& decisions) {
 }  // namespace
 
 Diagnostics notes(const Scene& scene, const Simulation& simulation) {
-  return joined({simulation.notes, remarks_of(scene), simulation.plan.sides.notes});
+  return merged({simulation.notes, remarks_of(scene), simulation.plan.sides.notes});
 }
 
 void print_notes(const Diagnostics& notes, bool quiet, std::size_t most) {

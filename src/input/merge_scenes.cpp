@@ -89,7 +89,7 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
     for (ModelFace& face : found.faces) face.file = file;
     if (is_note(found.code)) found.text.insert(0, added.file + ": ");
   }
-  scene.diagnostics = joined({std::move(scene.diagnostics), std::move(added.diagnostics), std::move(palette.notes)});
+  scene.diagnostics = merged({std::move(scene.diagnostics), std::move(added.diagnostics), std::move(palette.notes)});
   scene.unsimulated.insert(scene.unsimulated.end(), added.unsimulated.begin(), added.unsimulated.end());
   scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
   scene.sensors.insert(scene.sensors.end(), added.sensors.begin(), added.sensors.end());

@@ -390,7 +390,7 @@ Scene with_sensors(Scene scene, const SceneFile& file) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
       FloorSensors found = sensors_over(scene, *grid);
       for (SensorGroup& group : found.groups) scene.sensors.push_back(std::move(group));
-      scene.diagnostics = joined({std::move(scene.diagnostics), found.notes});
+      scene.diagnostics = merged({std::move(scene.diagnostics), found.notes});
     } else {
       scene.sensors.push_back(std::get<SensorGroup>(entry));
     }

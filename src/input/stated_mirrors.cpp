@@ -50,7 +50,7 @@ Scene with_stated_mirrors(Scene scene) {
   }
   if (!mirrors.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_mirror, note_on_mirrors(mirrors, first)});
   scene.diagnostics =
-      joined({std::move(scene.diagnostics),
+      merged({std::move(scene.diagnostics),
               note_on(DiagnosticCode::lowered_reflectance,
                       "the specular reflectance of mirrors is lowered to what they do not reflect diffusely", darker)});
   return scene;

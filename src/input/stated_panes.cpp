@@ -76,7 +76,7 @@ Scene with_stated_panes(Scene scene) {
     material.reflectance = material.reflectance.min(most);
   }
   if (!panes.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_pane, note_on_panes(panes, first)});
-  scene.diagnostics = joined({std::move(scene.diagnostics),
+  scene.diagnostics = merged({std::move(scene.diagnostics),
                               note_on(DiagnosticCode::lowered_reflectance,
                                       "the reflectance of panes is lowered to what they do not let through", darker)});
   return scene;

@@ -80,7 +80,7 @@ std::string MappedFaces::sentence(const Faces& faces, const std::string& what) c
   return what + ": " + std::to_string(faces.count) + first;
 }
 
-std::vector<std::string> MappedFaces::notes() const {
+Diagnostics MappedFaces::notes() const {
   Diagnostics notes;
   if (without_.count > 0)
     notes.push_back({DiagnosticCode::simplified_picture,

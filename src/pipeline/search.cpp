@@ -308,7 +308,7 @@ std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
   if (steps_.size() > 1) return std::nullopt;
   SecondMesh next = second_mesh(run_, solved, steps_.back());
   Diagnostics& notes = next.mesh ? notes_ : solved.simulation.notes;
-  notes = joined({std::move(notes), std::move(next.notes)});
+  notes = merged({std::move(notes), std::move(next.notes)});
   if (!next.mesh) return std::nullopt;
   return remembered(std::move(*next.mesh), true);
 }

@@ -273,7 +273,7 @@ PatchSize patch_size(const Outlined& of, const Request& request) {
   PatchSize size = request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, expected_patches(of, request), 0, {}}
                                          : patch_size_for(asked, of, request);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
-  size.notes = joined({problems_with_size(of.scene), std::move(size.notes),
+  size.notes = merged({problems_with_size(of.scene), std::move(size.notes),
                        notes_on_fine_outlines(of.scene, of.sides, asked, outline_edge)});
   return size;
 }
@@ -366,7 +366,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .resources = request.resources,
           .decisions = std::move(decisions),
           .lamp_colour = !in_colour && one_colour ? *facts.lamp_colour : Spectrum(),
-          .notes = joined({std::move(size.notes), notes_on_storage, std::move(notes_on_contacts),
+          .notes = merged({std::move(size.notes), notes_on_storage, std::move(notes_on_contacts),
                            notes_on_overruling(facts, request), notes_on_sun(scene), notes_on_sheets(facts),
                            notes_on_luminaires_behind(scene), request.mesh.kept_sides ? left_out() : Diagnostics()})};
 }
@@ -388,7 +388,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = {},
-          .notes = joined({std::move(size.notes), notes_on_pairs(scene, request), std::move(notes_on_contacts)})};
+          .notes = merged({std::move(size.notes), notes_on_pairs(scene, request), std::move(notes_on_contacts)})};
 }
 
 bool refines(const AccuracyOptions& accuracy) { return accuracy.relative_error || accuracy.seconds; }

@@ -105,7 +105,7 @@ Diagnostics problems_of_cut_ones(const Scene& scene) {
 // That luminaires are farther from the model than it is long, and than 30 m; and that faces cut the spheres of some.
 // O(spheres x log n) for n polygons, and O(n) where there are spheres.
 Diagnostics problems_with_luminaires(const Scene& scene) {
-  return joined({problems_of_far_ones(scene), problems_of_cut_ones(scene)});
+  return merged({problems_of_far_ones(scene), problems_of_cut_ones(scene)});
 }
 
 // A model is between a chair's part and a large building. Metres.
@@ -246,7 +246,7 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
 
 Diagnostics problems_with_size(const Scene& scene) {
   const double size = main_bounds(scene).sizes().maxCoeff();
-  return joined({problems_of_size(scene, guess_unit(scene, size), size), problems_with_luminaires(scene)});
+  return merged({problems_of_size(scene, guess_unit(scene, size), size), problems_with_luminaires(scene)});
 }
 
 Diagnostics problems_with_sensors(const Scene& scene) {
@@ -293,7 +293,7 @@ SceneReport survey(const Scene& scene) {
   report.unit_guess = guess_unit(scene, size);
   report.usable = has_lamp(scene);
   Diagnostics found =
-      joined({scene.diagnostics, problems_of_size(scene, report.unit_guess, size), problems_with_luminaires(scene),
+      merged({scene.diagnostics, problems_of_size(scene, report.unit_guess, size), problems_with_luminaires(scene),
               problems_with_sensors(scene), problems_with_reflectance(report.materials),
               problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic)))});
   if (!report.usable) {

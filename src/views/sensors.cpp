@@ -147,7 +147,7 @@ SensorView read_sensors(const Scene& scene, const Simulation& simulation, const 
   const std::vector<SensorPlace> places =
       place_sensors(scene, simulation.plan.sides, simulation.tracing->all_faces(scene));
   return {readings_at(places, scene, simulation, observer),
-          joined({doubtful_sensors(scene, places), sensors_far_off(scene),
+          merged({doubtful_sensors(scene, places), sensors_far_off(scene),
                   sensors_close_to_pictures(scene, simulation.mesh)})};
 }
 

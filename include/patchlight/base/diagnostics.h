@@ -89,7 +89,7 @@ struct ModelFace {
 /// One finding.
 struct Diagnostic {
   DiagnosticCode code = DiagnosticCode::no_lamp;
-  std::string text;                   ///< one sentence: the finding, how many, and the action
+  std::string text = {};              ///< one sentence: the finding, how many, and the action
   std::size_t count = 1;              ///< of faces, edges, vertices, files, materials or luminaires
   std::vector<ModelFace> faces = {};  ///< those concerned, in the model's order; may be empty
   double area = 0;                    ///< m^2 of the faces, as far as their corners are known
@@ -120,7 +120,7 @@ Diagnostics worst_first(Diagnostics diagnostics);
 Diagnostics chosen(Diagnostics all, bool (*is_chosen)(DiagnosticCode));
 
 /// The lists one after the other.
-Diagnostics joined(std::vector<Diagnostics> lists);
+Diagnostics merged(std::vector<Diagnostics> lists);
 
 /// The texts alone.
 std::vector<std::string> texts_of(const Diagnostics& diagnostics);

@@ -149,7 +149,7 @@ class GbxmlReader {
           {DiagnosticCode::north_of_file,
            "CADModelAzimuth " + rounded(turned_) + " is left out: north is y unless a scene file says otherwise"});
     scene_.diagnostics =
-        joined({std::move(scene_.diagnostics),
+        merged({std::move(scene_.diagnostics),
                 note_on(DiagnosticCode::assumed_material,
                         "windows without a visible transmittance in their type have 0.7", materials_.assumed())});
     scene_ = left_out_.on(std::move(scene_));

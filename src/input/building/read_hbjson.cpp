@@ -229,7 +229,7 @@ class HoneybeeScene {
     for (const HbJson& grid : list_of(radiance_of(model), "sensor_grids")) add_grid(grid);
     for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
     scene_.diagnostics =
-        joined({std::move(scene_.diagnostics),
+        merged({std::move(scene_.diagnostics),
                 note_on(DiagnosticCode::assumed_material,
                         "modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown())});
     scene_ = left_out_.on(std::move(scene_));

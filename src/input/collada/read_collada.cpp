@@ -86,7 +86,7 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
     if (material.stated_pane) panes.push_back(material.name);
   }
   scene.diagnostics =
-      joined({std::move(scene.diagnostics), note_on(DiagnosticCode::simplified_picture,
+      merged({std::move(scene.diagnostics), note_on(DiagnosticCode::simplified_picture,
                                                     "textures of panes are replaced by their mean colour", panes)});
   std::vector<std::string> contents = {bytes};
   contents.insert(contents.end(), colours.digests.begin(), colours.digests.end());
@@ -164,7 +164,7 @@ Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictu
   if (!pictures.empty()) scene.inputs.resize(scene.materials.size());
   for (const auto& [m, picture] : pictures) scene.inputs[m] = picture.file;
   scene.diagnostics =
-      joined({std::move(scene.diagnostics),
+      merged({std::move(scene.diagnostics),
               note_on(DiagnosticCode::simplified_part, "textures of other than diffuse colours are ignored", ignored)});
   return scene;
 }
@@ -210,7 +210,7 @@ class AssimpCollector {
 
   Scene scene() && {
     scene_.texture_maps = mapped_.maps();
-    scene_.diagnostics = joined({std::move(scene_.diagnostics), mapped_.notes()});
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), mapped_.notes()});
     return left_out_.on(std::move(scene_));
   }
 

@@ -250,7 +250,7 @@ std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
 Diagnostics notes_on_materials(const GltfModel& gltf) {
   Diagnostics notes;
   const auto name = [&](DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names) {
-    notes = joined({std::move(notes), note_on(code, sentence, names)});
+    notes = merged({std::move(notes), note_on(code, sentence, names)});
   };
   const auto note = [&](DiagnosticCode code, const std::string& sentence, const GltfProperty& property) {
     name(code, sentence, names_with(gltf, property));
@@ -349,7 +349,7 @@ class GltfCollector {
          "parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
     note(DiagnosticCode::simplified_part, "parts with vertex colors, which are ignored: ", colored_);
     scene_.texture_maps = mapped_.maps();
-    scene_.diagnostics = joined({std::move(scene_.diagnostics), mapped_.notes()});
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), mapped_.notes()});
     return left_out_.on(std::move(scene_));
   }
 
@@ -506,7 +506,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
 
   // 3. What is not simulated.
   scene.unsimulated = unsimulated(gltf);
-  scene.diagnostics = joined({std::move(scene.diagnostics), notes_on_materials(gltf)});
+  scene.diagnostics = merged({std::move(scene.diagnostics), notes_on_materials(gltf)});
   return scene;
 }
 

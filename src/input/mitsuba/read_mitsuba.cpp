@@ -397,7 +397,7 @@ class MitsubaReader {
     scene_.inputs.insert(scene_.inputs.end(), meshes_.files.begin(), meshes_.files.end());
     scene_.sha256 = sha256(digests);
     scene_ = left_out_.on(std::move(scene_));
-    scene_.diagnostics = joined({std::move(scene_.diagnostics), meshes_.losses});
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), meshes_.losses});
     return with_used_materials(std::move(scene_));
   }
 

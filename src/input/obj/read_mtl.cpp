@@ -243,7 +243,7 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
 Diagnostics notes_on_ignored(std::span<const MtlMaterial> materials) {
   Diagnostics notes;
   const auto add = [&](DiagnosticCode code, const std::string& sentence, bool (*property)(const MtlMaterial&)) {
-    notes = joined({std::move(notes), note_on(code, sentence, names_with(materials, property))});
+    notes = merged({std::move(notes), note_on(code, sentence, names_with(materials, property))});
   };
   const auto note = [&](const std::string& sentence, bool (*property)(const MtlMaterial&)) {
     add(DiagnosticCode::simplified_part, sentence, property);

@@ -256,7 +256,7 @@ Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const Pict
     note(material, material.mask_picture, "map_d, line " + std::to_string(material.mask_line), "it makes no holes");
     if (material.covered < 1) covered.push_back(material.name + " (" + rounded(material.covered) + ")");
   }
-  return joined({std::move(notes), note_on(DiagnosticCode::cut_out_material, covered_note, covered)});
+  return merged({std::move(notes), note_on(DiagnosticCode::cut_out_material, covered_note, covered)});
 }
 
 constexpr double default_reflectance = 0.5;
@@ -390,7 +390,7 @@ Scene with_texture_maps(Scene scene, const ObjScan& scan, const ObjPalette& pale
     polygon.texture_map = mapped.add(corner_points(scene, static_cast<PolygonIndex>(f)), places, polygon.line);
   }
   scene.texture_maps = mapped.maps();
-  scene.diagnostics = joined({std::move(scene.diagnostics), mapped.notes()});
+  scene.diagnostics = merged({std::move(scene.diagnostics), mapped.notes()});
   return scene;
 }
 
@@ -399,7 +399,7 @@ Diagnostics notes_on(const ObjScan& scan, const ObjPalette& palette) {
   if (scan.colored_vertices > 0)
     notes.push_back(
         {DiagnosticCode::simplified_part, "colors of vertices, ignored: " + std::to_string(scan.colored_vertices)});
-  return joined({std::move(notes), notes_on_ignored(palette.materials)});
+  return merged({std::move(notes), notes_on_ignored(palette.materials)});
 }
 
 // "a (room.obj:3), b (room.obj:9) and 12 more".
@@ -495,7 +495,7 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   scene.file = file.string();
   scene.metres_per_unit = metres_per_unit;
   scene.unsimulated = unsimulated(palette.materials);
-  scene.diagnostics = joined({libraries.problems, problems_with_names(file.string(), scan, libraries.materials),
+  scene.diagnostics = merged({libraries.problems, problems_with_names(file.string(), scan, libraries.materials),
                               notes_on(scan, palette), notes_on_pictures(palette.materials, pictures)});
   scene = with_texture_maps(std::move(scene), scan, palette);
   scene.lamp_hints = lamp_hints(palette.materials);

@@ -49,10 +49,10 @@ TEST(Diagnostics, AreSortedByCodeAndKeepTheirOrderWithinOne) {
   EXPECT_EQ(texts_of(sorted), (std::vector<std::string>{"c", "b", "d", "a"}));
 }
 
-TEST(Diagnostics, AreJoinedInTheirOrder) {
+TEST(Diagnostics, AreMergedInTheirOrder) {
   const Diagnostics first = {{DiagnosticCode::non_planar, "a"}};
   const Diagnostics second = {{DiagnosticCode::no_lamp, "b"}, {DiagnosticCode::no_lamp, "c"}};
-  EXPECT_EQ(texts_of(joined({first, {}, second})), (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(texts_of(merged({first, {}, second})), (std::vector<std::string>{"a", "b", "c"}));
 }
 
 }  // namespace
