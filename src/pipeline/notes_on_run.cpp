@@ -32,7 +32,7 @@ Diagnostics notes_on_chains(const Scene& scene, const Tracing& tracing) {
 }  // namespace
 
 Diagnostics notes_on_run(const Scene& scene, const Tracing& tracing, const Plan& plan) {
-  return joined(
+  return merged(
       {plan.notes, problems_with_overlaps(scene, tracing.coverings()), notes_on_chains(scene, tracing),
        refines(plan.accuracy) ? Diagnostics() : notes_on_close_lamps(scene, tracing.between_patches(), plan.max_edge)});
 }

@@ -217,7 +217,7 @@ void Search::keep(const Simulation& simulation) {
 SolvedMesh Search::noted(SolvedMesh solved) {
   solved.more_rays = more_rays_;
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
-  solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
+  solved.simulation.notes = merged({std::move(solved.simulation.notes), notes_});
   solved.simulation.accuracy = steps_;
   const bool may_be_followed =
       refines(run_.plan.accuracy) || (!steps_.empty() && makes_second_mesh(run_, steps_[0].patches));

@@ -339,7 +339,7 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   scene.sensors.push_back(group);
   const Occluder occluder(scene, Occluder::Blockers::all);
   const std::vector<std::string> found =
-      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
+      texts_of(doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder)));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
       << found[0];
@@ -372,7 +372,7 @@ TEST(DoubtfulSensors, ManyAreCounted) {
   scene.sensors.push_back({.name = "all", .sensors = std::vector<Sensor>(9, {Point(1.5, 1.4, 0.8), Vector::UnitZ()})});
   const Occluder occluder(scene, Occluder::Blockers::all);
   const std::vector<std::string> found =
-      doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder));
+      texts_of(doubtful_sensors(scene, place_sensors(scene, kept_sides(scene, Sides::automatic), occluder)));
   ASSERT_EQ(found.size(), 6U);
   EXPECT_EQ(found[5].rfind("4 more sensors", 0), 0U) << found[5];
 }
