@@ -56,7 +56,7 @@ setTimeout(() => {
     title: document.title, lost: document.getElementById("lost").textContent, headings: [...document.querySelectorAll("h2")].map((heading) => heading.textContent),
     unlabelled: [...document.querySelectorAll("input, select")].filter((control) => control.labels.length === 0).length, options: document.getElementById("quantity").options.length,
     ticks: document.getElementById("ticks").textContent, panes, extremes: document.getElementById("extremes").textContent, top: Number(document.getElementById("high").value),
-    notes: [...document.querySelectorAll("#notes p, #notes li")].map((note) => note.firstChild.textContent.replace(/^(remark|warning|error): /, "").trim()),
+    notes: [...document.querySelectorAll("#notes p")].map((note) => note.firstChild.textContent.replace(/^(note|remark|warning|error): \\w+: /, "").trim()),
     looks: data.model.looks.map((look) => look.name)};
   const pre = document.createElement("pre");
   pre.id = "check";

@@ -19,7 +19,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -82,7 +81,7 @@ Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, c
 
   // 3. Share what rays and sources of light need with all later steps, and with the views of the solution.
   const auto world = std::make_shared<const World>(std::move(read), plan);
-  const std::vector<std::string> notes = notes_on_run(*world, plan);
+  const Diagnostics notes = notes_on_run(*world, plan);
   const Run run{world->planned_scene(), request, plan, notes, world, with, observer};
   const std::vector<LightColour> colours = light_colours(run);
 

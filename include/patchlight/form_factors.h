@@ -5,9 +5,6 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/transport/exchange.h"
 
-#include <string>
-#include <vector>
-
 namespace patchlight {
 
 /// The form factors between the patches of a scene.
@@ -16,7 +13,7 @@ struct FormFactors {
   Plan plan;
   PatchMesh mesh;
   Exchange exchange;
-  std::vector<std::string> notes = {};  ///< on polygons that lie one on the other
+  Diagnostics notes = {};  ///< on polygons that lie one on the other
 };
 
 /// The first half of simulate(), for a scene that need not have a lamp: without one Sides::automatic means the front

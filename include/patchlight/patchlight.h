@@ -4,6 +4,7 @@
 /// All of the library: simulate() takes a Scene and a Request and gives a Simulation.
 
 #include "patchlight/accuracy/error_bars.h"
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 #include "patchlight/base/field.h"
 #include "patchlight/base/geometry.h"
@@ -25,7 +26,6 @@
 #include "patchlight/report/report.h"
 #include "patchlight/scene/daylight.h"
 #include "patchlight/scene/luminaire.h"
-#include "patchlight/scene/problem.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 #include "patchlight/scene/sides.h"

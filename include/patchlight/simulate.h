@@ -79,8 +79,8 @@ struct Simulation {
   Eigen::VectorXd enclosed = {};         ///< by daylight 1 for each patch of a space that holds what light gets in, as
                                          ///< a room with windows, else 0; empty without sky and sun
   std::vector<StageCost> costs;
-  std::vector<std::string> notes = {};  ///< of the plan, and what of the scene, when looked at, may not be as meant
-  Field direct_standard_error = {};     ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
+  Diagnostics notes = {};            ///< of the plan, and what of the scene, when looked at, may not be as meant
+  Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
                                   ///< the solver err, which are not known; else empty
   std::vector<Field> correlated_errors = {};  ///< equally likely draws of the sampling error of the irradiance that

@@ -104,11 +104,34 @@ Json polygons_part(const Scene& scene) {
           {"face", face}};
 }
 
+// Without the faces.
+Json diagnostics_part(const Diagnostics& diagnostics) {
+  Json part = Json::array();
+  for (const Diagnostic& found : diagnostics)
+    part.push_back({{"code", name_of(found.code)},
+                    {"count", found.count},
+                    {"text", json_of(found.text)},
+                    {"area_m2", found.area}});
+  return part;
+}
+
+Diagnostics diagnostics_of(const Json& json) {
+  Diagnostics diagnostics;
+  for (const Json& part : json) {
+    const std::string name = text_of(part.at("code"));
+    const std::optional<DiagnosticCode> known = diagnostic_code(name);
+    require(known.has_value(), "the code '" + name + "' is not known");
+    diagnostics.push_back(
+        {*known, text_of(part.at("text")), part.at("count").get<std::size_t>(), {}, part.at("area_m2").get<double>()});
+  }
+  return diagnostics;
+}
+
 Json sides_part(const KeptSides& sides) {
   return {{"front", sides.front},
           {"back", sides.back},
           {"emit_from_back", sides.emit_from_back},
-          {"notes", json_of(sides.notes)}};
+          {"notes", diagnostics_part(sides.notes)}};
 }
 
 // `count` whole numbers from 0 up to, but without, `end`.
@@ -201,7 +224,7 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
   return {{front.begin(), front.end()},
           {back.begin(), back.end()},
           json.at("emit_from_back").get<bool>(),
-          texts_of(json.at("notes"))};
+          diagnostics_of(json.at("notes"))};
 }
 
 [[noreturn]] void refuse_lights(const std::filesystem::path& folder) {
@@ -209,29 +232,6 @@ KeptSides sides_of(const Json& json, std::size_t polygons) {
       folder.string(),
       "its scene has luminaires, sun or sky, which earlier versions did not keep with form factors; compute "
       "them again: patchlight form-factors MODEL -o FOLDER");
-}
-
-// Faces of problems are not stored.
-Json problems_part(const Scene& scene) {
-  Json part = Json::array();
-  for (const Problem& problem : scene.problems)
-    part.push_back({{"kind", name_of(problem.kind)},
-                    {"count", problem.count},
-                    {"what", json_of(problem.what)},
-                    {"area_m2", problem.area}});
-  return part;
-}
-
-std::vector<Problem> problems_of(const Json& json) {
-  std::vector<Problem> problems;
-  for (const Json& part : json) {
-    const std::string name = text_of(part.at("kind"));
-    const std::optional<ProblemKind> known = problem_kind(name);
-    require(known.has_value(), "the kind of problem '" + name + "' is not known");
-    problems.push_back(
-        {*known, part.at("count").get<std::size_t>(), text_of(part.at("what")), {}, part.at("area_m2").get<double>()});
-  }
-  return problems;
 }
 
 StoredScene stored_scene_of(const Json& json) {
@@ -243,8 +243,7 @@ StoredScene stored_scene_of(const Json& json) {
   scene.metres_per_unit = json.at("metres_per_unit").get<double>();
   scene.up = vector_of(json.at("up"));
   scene.up_stated = json.at("up_stated").get<bool>();
-  scene.notes = texts_of(json.at("notes"));
-  scene.problems = problems_of(json.at("problems"));
+  scene.diagnostics = diagnostics_of(json.at("diagnostics"));
   scene.materials = materials_of(json.at("materials"));
   if (json.contains("bands")) scene.bands = bands_from(json.at("bands"));
   scene.lamp_hints = lamp_hints_of(json.at("lamp_hints"));
@@ -272,11 +271,10 @@ void write_stored_scene(const std::filesystem::path& file, const Scene& scene, c
   json["metres_per_unit"] = scene.metres_per_unit;
   json["up"] = json_of(scene.up);
   json["up_stated"] = scene.up_stated;
-  std::vector<std::string> notes = scene.notes;
+  Diagnostics diagnostics = scene.diagnostics;
   if (std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.texture; }))
-    notes.emplace_back("pictures are not stored: their means count");
-  json["notes"] = json_of(notes);
-  json["problems"] = problems_part(scene);
+    diagnostics.push_back({DiagnosticCode::simplified_picture, "pictures are not stored: their means count"});
+  json["diagnostics"] = diagnostics_part(diagnostics);
   json["materials"] = materials_part(scene);
   if (!scene.bands.empty()) json["bands"] = json_of_bands(scene.bands);
   json["lamp_hints"] = lamp_hints_part(scene);

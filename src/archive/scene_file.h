@@ -9,7 +9,7 @@ namespace patchlight {
 
 /// The scene that form factors are of, and the sides of it that take part.
 struct StoredScene {
-  Scene scene;  ///< without its problems, which Scene::notes name
+  Scene scene;  ///< its diagnostics without their faces
   KeptSides sides;
 };
 

@@ -10,6 +10,7 @@
 #include "output/report/write_survey.h"
 #include "output/vtk/write_problems.h"
 #include "plan/survey.h"
+#include "scene/model_face.h"
 #include "scene/sensor_grid.h"
 
 #include <algorithm>
@@ -36,10 +37,6 @@ constexpr std::size_t most_rooms = 6;
 std::string rest_line(std::size_t count, std::size_t shown) {
   if (count <= shown) return {};
   return "  and " + std::to_string(count - shown) + " more (--all lists them)\n";
-}
-
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 template <class Values>
@@ -76,7 +73,8 @@ std::string sides_lines(const SceneReport& report) {
   std::ostringstream text;
   text << "sides (" << name_of(report.sides->chosen) << "): " << report.sides->kept << " of " << 2 * report.polygons
        << " take part, " << rounded(report.sides->area, digits) << " m^2\n";
-  for (const std::string& note : report.sides->notes) text << "  note: " << shown_name(note) << '\n';
+  for (const Diagnostic& note : report.sides->notes)
+    text << "  note: " << name_of(note.code) << ": " << shown_name(note.text) << '\n';
   return text.str();
 }
 
@@ -206,15 +204,14 @@ std::string with_hints(const std::string& text) {
   return with_hints(text.substr(0, at)) + "\n    hint: " + with_hints(text.substr(at + mark.size()));
 }
 
-std::string problem_lines(const Scene& scene, const SceneReport& report, bool all) {
-  std::array<std::size_t, 3> count{};
-  for (const Problem& problem : report.problems) ++count[static_cast<std::size_t>(severity_of(problem.kind))];
+std::string problem_lines(const SceneReport& report, bool all) {
+  std::array<std::size_t, 4> count{};
   std::vector<std::string> lines;
-  for (const Problem& problem : report.problems) {
-    lines.push_back(std::string(name_of(severity_of(problem.kind))) + ": " + name_of(problem.kind) + ": " +
-                    with_hints(problem.what));
+  for (const Diagnostic& found : report.diagnostics) {
+    ++count[static_cast<std::size_t>(severity_of(found.code))];
+    lines.push_back(std::string(name_of(severity_of(found.code))) + ": " + name_of(found.code) + ": " +
+                    with_hints(found.text));
   }
-  for (const std::string& note : scene.notes) lines.push_back("note: " + with_hints(note));
   std::string text = "problems: " + counted(count[0], "error") + ", " + counted(count[1], "warning") + ", " +
                      counted(count[2], "remark") + '\n';
   const std::size_t shown = all ? lines.size() : std::min(lines.size(), most_notes);
@@ -224,9 +221,9 @@ std::string problem_lines(const Scene& scene, const SceneReport& report, bool al
 
 const char* verdict(const SceneReport& report) {
   if (!report.usable) return "has no light yet; can be solved once it has one";
-  const bool has_errors = std::any_of(report.problems.begin(), report.problems.end(), [](const Problem& problem) {
-    return severity_of(problem.kind) == Severity::error;
-  });
+  const bool has_errors =
+      std::any_of(report.diagnostics.begin(), report.diagnostics.end(),
+                  [](const Diagnostic& problem) { return severity_of(problem.code) == Severity::error; });
   return has_errors ? "can be solved, but parts are lost: see the errors" : "can be solved";
 }
 
@@ -282,7 +279,7 @@ ExitCode check(const CheckArguments& arguments) {
               << counts_lines(report, scene.faces) << sides_lines(report) << room_lines(scene, arguments.all)
               << object_lines(report, arguments.all) << material_lines(report, arguments.all)
               << lamp_lines(report, scene.luminaires.size()) << daylight_lines(scene)
-              << problem_lines(scene, report, arguments.all) << std::flush;
+              << problem_lines(report, arguments.all) << std::flush;
   }
   if (!report.usable) print_message("note", scene.file + ": no light source: " + report.first_light->advice);
   return good;

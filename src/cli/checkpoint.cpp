@@ -38,10 +38,12 @@ void Checkpoint::remove() const {
     std::filesystem::remove(folder_, ignored);
 }
 
-std::string Checkpoint::note() const {
-  if (taken_ == 0) return "";
-  return "--checkpoint: " + std::to_string(taken_) + (taken_ == 1 ? " block of rows" : " blocks of rows") +
-         " that an earlier run had kept in " + folder_.string();
+Diagnostics Checkpoint::notes() const {
+  if (taken_ == 0) return {};
+  return {{DiagnosticCode::checkpoint,
+           "--checkpoint: " + std::to_string(taken_) + (taken_ == 1 ? " block of rows" : " blocks of rows") +
+               " that an earlier run had kept in " + folder_.string(),
+           taken_}};
 }
 
 }  // namespace patchlight::cli

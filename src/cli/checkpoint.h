@@ -25,7 +25,7 @@ class Checkpoint {
   void remove() const;
 
   /// Says how many blocks an earlier run had kept; empty: none.
-  std::string note() const;
+  Diagnostics notes() const;
 
  private:
   std::filesystem::path folder_;

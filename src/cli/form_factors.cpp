@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
-#include <optional>
 #include <sstream>
 
 namespace patchlight::cli {
@@ -42,13 +41,15 @@ std::string table(const GroupFactors& groups) {
 }
 
 // What the figures of a group are shares of.
-std::optional<std::string> note_on_groups(const KeptSides& sides) {
+Diagnostics note_on_groups(const KeptSides& sides) {
   std::size_t both = 0;
   for (std::size_t p = 0; p < sides.front.size(); ++p) both += sides.front[p] != 0 && sides.back[p] != 0 ? 1 : 0;
-  if (both == 0) return std::nullopt;
-  return "both sides of " + std::to_string(both) +
-         " faces take part: the form factor from a group is a share of what leaves all of its sides together, half of "
-         "that from the fronts where backs see nothing; --sides front leaves the backs out";
+  if (both == 0) return {};
+  return {{DiagnosticCode::both_sides,
+           "both sides of " + std::to_string(both) +
+               " faces take part: the form factor from a group is a share of what leaves all of its sides together, "
+               "half of that from the fronts where backs see nothing; --sides front leaves the backs out",
+           both}};
 }
 
 std::string summary(const Scene& scene, const FormFactors& form_factors) {
@@ -66,18 +67,16 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
 
 // What is told of them.
 struct Written {
-  std::vector<std::string> notes;
+  Diagnostics notes;
   std::string summary;
 };
 
 // Of either kind of form factors.
 template <class Found>
-std::vector<std::string> notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
-  std::vector<std::string> all = remarks_of(scene);
-  for (const auto* notes : {&found.plan.sides.notes, &found.plan.notes, &found.notes})
-    all.insert(all.end(), notes->begin(), notes->end());
+Diagnostics notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
+  Diagnostics all = merged({remarks_of(scene), found.plan.sides.notes, found.plan.notes, found.notes});
   if (found.request.mesh.sides != arguments.request.mesh.sides)
-    all.emplace_back("no light source, so --sides auto uses the front sides");
+    all.push_back({DiagnosticCode::unlit_sides, "no light source, so --sides auto uses the front sides"});
   return all;
 }
 
@@ -92,7 +91,7 @@ Written write_pairs(const FormFactorArguments& arguments, const Scene& scene, co
     write_form_factors(arguments.output, {scene, found, groups, arguments.command_line, arguments.format}, observer);
   }
   Written written{notes_on(arguments, scene, found), summary(scene, found)};
-  if (const auto note = note_on_groups(found.plan.sides); note && !groups.empty()) written.notes.push_back(*note);
+  if (!groups.empty()) written.notes = merged({std::move(written.notes), note_on_groups(found.plan.sides)});
   for (const GroupFactors& table_of : groups) written.summary += table(table_of);
   return written;
 }

@@ -19,10 +19,10 @@ ExitCode init(const InitArguments& arguments) {
     throw OutputError(arguments.output.string(), "already exists\nhint: choose another name, or delete it");
   check_writable(arguments.output);
   const Scene scene = read_scene(arguments.models, arguments.read);
-  for (const Problem& problem : problems_with_size(scene)) print_message("note", problem.what);
+  for (const Diagnostic& problem : problems_with_size(scene)) print_diagnostic("note", problem);
   const NewLight light = new_light(scene);
   const TriedPlaces tried = new_places(with_new_light(scene, light));
-  for (const std::string& note : tried.notes) print_message("note", note);
+  for (const Diagnostic& note : tried.notes) print_diagnostic("note", note);
   const std::string text =
       new_scene_file(scene, light, tried.places, arguments.models, arguments.read.metres_per_unit, arguments.output);
   const WritingGuard guard;

@@ -142,7 +142,8 @@ std::vector<TriedGrid> tried(const Trial& trial, const std::vector<SensorGroup>&
 void note_bad_places(LeftOut& notes, const std::string& floor, const TriedGrid& grid) {
   if (grid.good < grid.places)
     notes.add("floors with sensors in open air or in a solid",
-              floor + " " + std::to_string(grid.places - grid.good) + " of " + std::to_string(grid.places));
+              floor + " " + std::to_string(grid.places - grid.good) + " of " + std::to_string(grid.places),
+              DiagnosticCode::missing_sensors);
 }
 
 FloorGrid standard_work_plane() {
@@ -176,7 +177,8 @@ NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
       grid.rooms.push_back(name);
       note_bad_places(notes, name, grids[k]);
     } else if (without.insert(name).second) {
-      notes.add("rooms without sensors, as they are open to the sky, too narrow or without a level floor", name);
+      notes.add("rooms without sensors, as they are open to the sky, too narrow or without a level floor", name,
+                DiagnosticCode::missing_sensors);
     }
   }
   NewPlaces places;
@@ -289,7 +291,7 @@ TriedPlaces new_places(const Scene& lit) {
     });
     tried.places.cameras = cameras_in(trial, std::move(inside));
   }
-  tried.notes = notes.on({}).notes;
+  tried.notes = notes.on({}).diagnostics;
   return tried;
 }
 

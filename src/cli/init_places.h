@@ -4,15 +4,12 @@
 
 #include "input/toml/new_scene_file.h"
 
-#include <string>
-#include <vector>
-
 namespace patchlight::cli {
 
 /// Places that solve accepts, and notes on those that it would not.
 struct TriedPlaces {
   NewPlaces places;
-  std::vector<std::string> notes;
+  Diagnostics notes;
 };
 
 /// Sensors over the floors of rooms, else over the floor with the largest closed room above it, and a camera inside

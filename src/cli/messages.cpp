@@ -49,8 +49,13 @@ void print_message(const char* kind, const std::string& text) {
   std::cerr << "patchlight: " << kind << ": " << printable(lines) << '\n';
 }
 
+void print_diagnostic(const char* kind, const Diagnostic& diagnostic) {
+  print_message(kind, name_of(diagnostic.code) + ": " + diagnostic.text);
+}
+
 void print_scene_warnings(const Scene& scene) {
-  for (const std::string& warning : warnings_of(scene)) print_message("warning", scene.file + ": " + warning);
+  for (const Diagnostic& warning : chosen(scene.diagnostics, makes_results_wrong))
+    print_diagnostic("warning", {warning.code, scene.file + ": " + warning.text});
 }
 
 std::string printable(std::string_view text) {

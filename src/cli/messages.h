@@ -14,6 +14,9 @@ enum class Verbosity { quiet, normal, verbose };
 /// the text that begins with "hint: " on a new line has a line of its own; other line breaks become spaces.
 void print_message(const char* kind, const std::string& text);
 
+/// Prints "patchlight: KIND: CODE: TEXT" in the same way.
+void print_diagnostic(const char* kind, const Diagnostic& diagnostic);
+
 /// Prints a warning on stderr for each problem that can make all results wrong. Commands call it before the work
 /// begins, also when they are quiet.
 void print_scene_warnings(const Scene& scene);

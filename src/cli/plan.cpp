@@ -14,7 +14,7 @@
 #include "pipeline/second_mesh.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 
 #include <iomanip>
 #include <iostream>
@@ -89,7 +89,7 @@ ExitCode plan(const PlanArguments& arguments) {
 
   const WritingGuard guard;
   if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
-  for (const auto& notes : {remarks_of(scene), plan.sides.notes, plan.notes}) print_notes(notes, false);
+  print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
             << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"

@@ -207,7 +207,7 @@ LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
 void tell_of_long_work(const Scene& scene, const SolveArguments& arguments, ProgressLine& line) {
   if (arguments.verbosity == Verbosity::quiet) return;
   line.hide();
-  for (const Problem& problem : problems_with_sensors(scene)) print_message("note", problem.what);
+  for (const Diagnostic& problem : problems_with_sensors(scene)) print_diagnostic("note", problem);
 }
 
 // The scene and its solution.
@@ -350,11 +350,11 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
 
 // Prints warnings, then the results that the user asked for, the files, the facts of the run, and notes.
 void print_results(const SolveArguments& arguments, const Results& results,
-                   const std::vector<std::filesystem::path>& written, const std::string& note_on_checkpoint) {
+                   const std::vector<std::filesystem::path>& written, const Diagnostics& of_checkpoint) {
   constexpr std::size_t most_notes = 5;
   const bool is_quiet = arguments.verbosity == Verbosity::quiet;
   const bool is_verbose = arguments.verbosity == Verbosity::verbose;
-  for (const std::string& warning : results.views.sensors.warnings) print_message("warning", warning);
+  for (const Diagnostic& warning : results.views.sensors.warnings) print_diagnostic("warning", warning);
   if (results.views.picture) {
     if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
   }
@@ -363,8 +363,7 @@ void print_results(const SolveArguments& arguments, const Results& results,
                                   how_to_know_errors(arguments, results.report.solution.unfinished));
   if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
   std::cout << files_line(written) << summary_of_run(results.report, is_verbose) << std::flush;
-  std::vector<std::string> all = notes(*results.scene, results.simulation);
-  if (!note_on_checkpoint.empty()) all.insert(all.begin(), note_on_checkpoint);
+  const Diagnostics all = merged({of_checkpoint, notes(*results.scene, results.simulation)});
   print_notes(all, false, is_verbose ? all.size() : most_notes);
 }
 
@@ -411,7 +410,7 @@ ExitCode solve(const SolveArguments& arguments) {
   if (!results.report.solution.unfinished) checkpoint.remove();
   std::vector<std::filesystem::path> written = outputs.written();
   if (results.views.lightmap) written.push_back(arguments.lightmap.folder);
-  print_results(arguments, results, written, checkpoint.note());
+  print_results(arguments, results, written, checkpoint.notes());
   if (results.views.lightmap_error) throw InputError(*results.views.lightmap_error);
   return exit_code_of(results.report);
 }

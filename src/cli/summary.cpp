@@ -237,19 +237,14 @@ std::string effects_line(const std::vector<Decision>& decisions) {
 
 }  // namespace
 
-std::vector<std::string> notes(const Scene& scene, const Simulation& simulation) {
-  std::vector<std::string> all = simulation.notes;
-  const std::vector<std::string> of_scene = remarks_of(scene);
-  const std::vector<std::string>& of_sides = simulation.plan.sides.notes;
-  all.insert(all.end(), of_scene.begin(), of_scene.end());
-  all.insert(all.end(), of_sides.begin(), of_sides.end());
-  return all;
+Diagnostics notes(const Scene& scene, const Simulation& simulation) {
+  return merged({simulation.notes, remarks_of(scene), simulation.plan.sides.notes});
 }
 
-void print_notes(const std::vector<std::string>& notes, bool quiet, std::size_t most) {
+void print_notes(const Diagnostics& notes, bool quiet, std::size_t most) {
   if (quiet) return;
   const std::size_t shown = std::min(most, notes.size());
-  for (std::size_t k = 0; k < shown; ++k) print_message("note", notes[k]);
+  for (std::size_t k = 0; k < shown; ++k) print_diagnostic("note", notes[k]);
   if (shown < notes.size())
     print_message("note", std::to_string(notes.size() - shown) +
                               " more notes\nhint: --verbose prints them, --json FILE has them");

@@ -13,11 +13,10 @@ namespace patchlight::cli {
 
 /// Remarks on the run, the scene and its sides, without the warnings of print_scene_warnings(). Those that say most
 /// about the results stand first.
-std::vector<std::string> notes(const Scene& scene, const Simulation& simulation);
+Diagnostics notes(const Scene& scene, const Simulation& simulation);
 
 /// Prints the first `most` notes and the number of the others, unless the run is quiet.
-void print_notes(const std::vector<std::string>& notes, bool quiet,
-                 std::size_t most = std::numeric_limits<std::size_t>::max());
+void print_notes(const Diagnostics& notes, bool quiet, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// The results that the user asked for: a line for each group of sensors and the estimated errors. Where errors are not
 /// known, `how_to_know_errors` names the way to compute them. The long form adds the meshes on the way to an accuracy.

@@ -44,7 +44,7 @@ bool looks_at_from_close(const Sensor& sensor, const PatchMesh& mesh, PatchIndex
                      [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) > in_plane * width; });
 }
 
-std::string sentence(const SensorGroup& group, std::size_t k, Standing standing) {
+Diagnostic finding(const SensorGroup& group, std::size_t k, Standing standing) {
   std::ostringstream text;
   const Point& point = group.sensors[k].point;
   text
@@ -54,31 +54,32 @@ std::string sentence(const SensorGroup& group, std::size_t k, Standing standing)
                 "of minimum, mean and maximum. Move it into the room, or give the room a lamp"
               : "lies in a surface that it does not face along: rounding decides on which side of it. Move it away, by "
                 "a millimetre or more");
-  return text.str();
+  return {DiagnosticCode::doubtful_sensor, text.str()};
 }
 
 }  // namespace
 
-std::vector<std::string> doubtful_sensors(const std::vector<SensorGroup>& sensors,
-                                          std::span<const SensorPlace> places) {
-  std::vector<std::string> sentences;
+Diagnostics doubtful_sensors(const std::vector<SensorGroup>& sensors, std::span<const SensorPlace> places) {
+  Diagnostics found;
   std::size_t doubtful = 0;
   std::size_t place = 0;
   for (const SensorGroup& group : sensors) {
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++place) {
       const Standing standing = places[place].standing;
       if (standing == Standing::free) continue;
-      if (++doubtful <= most_sentences) sentences.push_back(sentence(group, k, standing));
+      if (++doubtful <= most_sentences) found.push_back(finding(group, k, standing));
     }
   }
   assert(place == places.size());
   if (doubtful > most_sentences) {
-    sentences.push_back(std::to_string(doubtful - most_sentences) + " more sensors lie inside walls or in surfaces");
+    found.push_back({DiagnosticCode::doubtful_sensor,
+                     std::to_string(doubtful - most_sentences) + " more sensors lie inside walls or in surfaces",
+                     doubtful - most_sentences});
   }
-  return sentences;
+  return found;
 }
 
-std::vector<std::string> sensors_far_off(const Scene& scene, const std::vector<SensorGroup>& sensors) {
+Diagnostics sensors_far_off(const Scene& scene, const std::vector<SensorGroup>& sensors) {
   const Box box = bounds(scene);
   const double length = box.diagonal().norm();
   std::string first;
@@ -90,13 +91,15 @@ std::vector<std::string> sensors_far_off(const Scene& scene, const std::vector<S
     }
   }
   if (count == 0) return {};
-  return {(count == 1 ? "1 sensor lies" : std::to_string(count) + " sensors lie") +
-          " farther from the model than that is long (the first: " + first +
-          "). Are they in the model's unit? Points for a scene file are in metres, whatever its unit"};
+  return {{DiagnosticCode::doubtful_sensor,
+           (count == 1 ? "1 sensor lies" : std::to_string(count) + " sensors lie") +
+               " farther from the model than that is long (the first: " + first +
+               "). Are they in the model's unit? Points for a scene file are in metres, whatever its unit",
+           count}};
 }
 
-std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const std::vector<SensorGroup>& sensors,
-                                                   const PatchMesh& mesh) {
+Diagnostics sensors_close_to_pictures(const Scene& scene, const std::vector<SensorGroup>& sensors,
+                                      const PatchMesh& mesh) {
   const std::vector<PatchIndex> patches = patches_with_pictures(scene, mesh);
   if (patches.empty()) return {};
   std::string first;
@@ -113,10 +116,12 @@ std::vector<std::string> sensors_close_to_pictures(const Scene& scene, const std
     count += static_cast<std::size_t>(std::accumulate(is_close.begin(), is_close.end(), 0));
   }
   if (count == 0) return {};
-  return {(count == 1 ? "1 sensor looks" : std::to_string(count) + " sensors look") +
-          " at patches with pictures from nearer than one and a half times these are wide (the first: " + first +
-          "): a patch sends the mean of its part of the picture, and no error bar of a sensor holds what the texels "
-          "differ. Ask for smaller patches, as by --max-edge"};
+  return {{DiagnosticCode::doubtful_sensor,
+           (count == 1 ? "1 sensor looks" : std::to_string(count) + " sensors look") +
+               " at patches with pictures from nearer than one and a half times these are wide (the first: " + first +
+               "): a patch sends the mean of its part of the picture, and no error bar of a sensor holds what the "
+               "texels differ. Ask for smaller patches, as by --max-edge",
+           count}};
 }
 
 }  // namespace patchlight

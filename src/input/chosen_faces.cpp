@@ -89,7 +89,7 @@ Scene with_chosen_faces(Scene scene, const FaceChoice& choice, const std::string
     throw InputError(where + (choice.leave_out.empty() ? ".only" : ".leave_out"),
                      "found no face that stays; expected one at least");
   if (std::find(stays.begin(), stays.end(), false) == stays.end()) return scene;
-  scene.notes.push_back(note_on_rest(scene, stays));
+  scene.diagnostics.push_back({DiagnosticCode::reduced_model, note_on_rest(scene, stays)});
   std::vector<Polygon> polygons;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (stays[p]) polygons.push_back(std::move(scene.polygons[p]));

@@ -13,8 +13,9 @@ Scene scene_without_materials(const std::string& file, double metres_per_unit) {
   scene.file = file;
   scene.metres_per_unit = metres_per_unit;
   scene.materials.push_back(default_material());
-  scene.notes.emplace_back(
-      "this format has no materials: all faces get the material 'default', reflectance 0.5; read.settings changes it");
+  scene.diagnostics.push_back({DiagnosticCode::assumed_material,
+                               "this format has no materials: all faces get the material 'default', reflectance 0.5; "
+                               "read.settings changes it"});
   return scene;
 }
 
@@ -57,9 +58,9 @@ std::string listed_shares(const Spectrum& shares) {
   return text;
 }
 
-std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names) {
+Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names) {
   if (names.empty()) return {};
-  return {sentence + ": " + listed(names)};
+  return {{code, sentence + ": " + listed(names)}};
 }
 
 }  // namespace patchlight

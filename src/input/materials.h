@@ -24,6 +24,6 @@ std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass
 std::string listed_shares(const Spectrum& shares);
 
 /// "sentence: a, b", or nothing when there are no names.
-std::vector<std::string> note_on(const std::string& sentence, const std::vector<std::string>& names);
+Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names);
 
 }  // namespace patchlight

@@ -30,7 +30,7 @@ bool same_values(const Material& a, const Material& b) {
 // The scene with another one's materials added; what becomes of those is their index in the scene.
 struct MergedPalette {
   std::vector<Material> materials;
-  std::vector<std::string> notes;
+  Diagnostics notes;
   std::vector<MaterialIndex> index;
 };
 
@@ -49,8 +49,9 @@ MergedPalette with_materials(std::vector<Material> materials, const Scene& added
     }
     if (known != index.end()) {
       const std::string name = names.unique(material.name + " (" + file + ")");
-      palette.notes.push_back("material '" + material.name + "' of " + added.file +
-                              " differs from that of an earlier file and is called '" + name + "'");
+      palette.notes.push_back(
+          {DiagnosticCode::renamed_material, "material '" + material.name + "' of " + added.file +
+                                                 " differs from that of an earlier file and is called '" + name + "'"});
       material.name = name;
     } else {
       names.unique(material.name);
@@ -84,12 +85,11 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   }
   scene.texture_maps.insert(scene.texture_maps.end(), added.texture_maps.begin(), added.texture_maps.end());
   scene.groups.insert(scene.groups.end(), added.groups.begin(), added.groups.end());
-  for (const std::string& note : added.notes) scene.notes.push_back(added.file + ": " + note);
-  scene.notes.insert(scene.notes.end(), palette.notes.begin(), palette.notes.end());
-  for (Problem& problem : added.problems) {
-    for (ProblemFace& face : problem.faces) face.file = file;
-    scene.problems.push_back(std::move(problem));
+  for (Diagnostic& found : added.diagnostics) {
+    for (ModelFace& face : found.faces) face.file = file;
+    if (is_note(found.code)) found.text.insert(0, added.file + ": ");
   }
+  scene.diagnostics = merged({std::move(scene.diagnostics), std::move(added.diagnostics), std::move(palette.notes)});
   scene.unsimulated.insert(scene.unsimulated.end(), added.unsimulated.begin(), added.unsimulated.end());
   scene.lamp_hints.insert(scene.lamp_hints.end(), added.lamp_hints.begin(), added.lamp_hints.end());
   scene.sensors.insert(scene.sensors.end(), added.sensors.begin(), added.sensors.end());
@@ -97,8 +97,8 @@ Scene joined(Scene scene, Scene added, std::uint32_t file) {
   scene.rooms.insert(scene.rooms.end(), added.rooms.begin(), added.rooms.end());
   scene.luminaires.insert(scene.luminaires.end(), added.luminaires.begin(), added.luminaires.end());
   if ((scene.sun && added.sun) || (scene.sky && added.sky))
-    scene.problems.push_back(
-        {ProblemKind::left_out, 1, added.file + ": its sun or sky is left out, as an earlier file has one", {}, 0});
+    scene.diagnostics.push_back(
+        {DiagnosticCode::left_out, added.file + ": its sun or sky is left out, as an earlier file has one"});
   if (!scene.sun) scene.sun = added.sun;
   if (!scene.sky) scene.sky = added.sky;
   scene.files.push_back(added.file);

@@ -222,14 +222,14 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
   colours.faults = std::move(read.faults);
   const auto& pictures = read.bytes;
   if (pictures.empty()) return colours;
-  // What a child process finds comes back as a scene: a material for each picture, and a note for each fault.
+  // What a child process finds comes back as a scene: a material for each picture, and a group for each fault.
   const std::size_t most = texels_of_one_of(pictures.size());
   const auto decode = [&] {
     Scene scene;
-    scene.notes.resize(pictures.size());
+    scene.groups.resize(pictures.size());
     for (std::size_t k = 0; k < pictures.size(); ++k) {
       const DecodedPicture picture = decoded_picture(pictures[k].second, most);
-      scene.notes[k] = picture.fault;
+      scene.groups[k] = picture.fault;
       if (!picture.mean) continue;
       scene.materials.push_back({std::to_string(k), *picture.mean, rgb(0, 0, 0)});
       scene.materials.back().transmittance = numbers_of_mask(picture);
@@ -249,7 +249,7 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
       colours.digests.push_back(sha256({&bytes, 1}));
     }
     for (std::size_t k = 0; k < pictures.size(); ++k)
-      if (!decoded.notes[k].empty()) colours.faults.emplace(pictures[k].first, decoded.notes[k]);
+      if (!decoded.groups[k].empty()) colours.faults.emplace(pictures[k].first, decoded.groups[k]);
   } catch (const InputError& refused) {
     for (const auto& [file, bytes] : pictures) colours.faults.emplace(file, "cannot be decoded");
   }

@@ -24,7 +24,7 @@
 #include "scene/joined_faces.h"
 #include "scene/less_detail.h"
 #include "scene/limits.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 #include "scene/repair.h"
 #include "scene/spectral_bands.h"
 
@@ -243,30 +243,28 @@ std::string upright_part(const ReadOptions& options, const std::vector<SceneFile
 
 // With a problem where `part` of the scene depends on a guess.
 Scene with_guess_of_up(Scene scene, const std::string& part) {
-  std::erase_if(scene.problems, [](const Problem& problem) { return problem.kind == ProblemKind::guessed_up; });
+  std::erase_if(scene.diagnostics,
+                [](const Diagnostic& problem) { return problem.code == DiagnosticCode::guessed_up; });
   if (scene.up_stated || part.empty()) return scene;
   const bool is_y = std::abs(scene.up.y()) > 0.5;
-  scene.problems.push_back({ProblemKind::guessed_up,
-                            1,
-                            std::string("no file states the vertical axis, and ") + part + " depends on it; " +
-                                (is_y ? "y" : "z") + " is a guess by the areas of faces\nhint: read.up=" +
-                                (is_y ? "y" : "z") + " if it is right, else read.up=" + (is_y ? "z" : "y"),
-                            {}});
+  scene.diagnostics.push_back(
+      {DiagnosticCode::guessed_up, std::string("no file states the vertical axis, and ") + part + " depends on it; " +
+                                       (is_y ? "y" : "z") + " is a guess by the areas of faces\nhint: read.up=" +
+                                       (is_y ? "y" : "z") + " if it is right, else read.up=" + (is_y ? "z" : "y")});
   return scene;
 }
 
 // Says why the faces were left out, if there were any.
 [[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
-  std::string reasons;
-  for (const Problem& problem : scene.problems) {
-    const bool is_reason = problem.kind == ProblemKind::zero_area || is_loss(problem.kind) ||
-                           problem.kind == ProblemKind::self_intersecting;
-    if (!is_reason) continue;
-    reasons += (reasons.empty() ? "" : "; ") + problem.what;
+  std::string reasons, others;
+  for (const Diagnostic& found : scene.diagnostics) {
+    if (found.code == DiagnosticCode::zero_area || is_loss(found.code) ||
+        found.code == DiagnosticCode::self_intersecting)
+      reasons += (reasons.empty() ? "" : "; ") + found.text;
+    else if (is_note(found.code))
+      others += "; " + found.text;
   }
   if (!reasons.empty()) throw InputError(scene.file, "none of its faces can be used: " + reasons);
-  std::string others;
-  for (const std::string& note : scene.notes) others += "; " + note;
   throw InputError(scene.file, "found no faces; expected at least one polygon" + others);
 }
 
@@ -370,9 +368,11 @@ Scene maintained(Scene scene, const ReadOptions& options, const std::vector<Scen
     if (material.stated_pane) material.stated_pane->matt_exitance *= *stated;
   }
   for (Luminaire& luminaire : scene.luminaires) luminaire = dimmed(std::move(luminaire), *stated);
-  scene.notes.push_back("maintenance factor " + shortest(*stated) +
-                        ": lamps and luminaires give that share of the light stated for them, and all results are "
-                        "maintained values; sun and sky are as stated");
+  scene.diagnostics.push_back(
+      {DiagnosticCode::maintenance_factor,
+       "maintenance factor " + shortest(*stated) +
+           ": lamps and luminaires give that share of the light stated for them, and all results are "
+           "maintained values; sun and sky are as stated"});
   return scene;
 }
 
@@ -390,7 +390,7 @@ Scene with_sensors(Scene scene, const SceneFile& file) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
       FloorSensors found = sensors_over(scene, *grid);
       for (SensorGroup& group : found.groups) scene.sensors.push_back(std::move(group));
-      for (std::string& note : found.notes) scene.notes.push_back(std::move(note));
+      scene.diagnostics = merged({std::move(scene.diagnostics), found.notes});
     } else {
       scene.sensors.push_back(std::get<SensorGroup>(entry));
     }
@@ -453,9 +453,10 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   scene = with_guess_of_up(set_upright(std::move(scene), options), upright_part(options.daylight));
   if (asks_for_daylight(options.daylight)) scene = with_other_daylight(std::move(scene), options);
   if (are_of_wavelengths(bands_of(scene)) && asks_for_new_light(options))
-    scene.notes.emplace_back(
-        "new light is spread over the bands as its linear RGB under D65, or as the lamp's was; "
-        "reflectances per band stay averaged over the light of the stored solution");
+    scene.diagnostics.push_back(
+        {DiagnosticCode::simplified_light,
+         "new light is spread over the bands as its linear RGB under D65, or as the lamp's was; "
+         "reflectances per band stay averaged over the light of the stored solution"});
   check_limits(scene);
   return scene;
 }

@@ -184,10 +184,8 @@ std::string scene_bytes(const Scene& scene) {
   for (const Material& material : scene.materials) write_material(out, material, textures);
   out.plain(scene.texture_maps.size());
   for (const TextureMap& map : scene.texture_maps) write_map(out, map);
-  for (const auto* texts : {&scene.groups, &scene.notes}) {
-    out.plain(texts->size());
-    for (const std::string& text : *texts) out.text(text);
-  }
+  out.plain(scene.groups.size());
+  for (const std::string& group : scene.groups) out.text(group);
   out.plain(scene.inputs.size());
   for (const std::filesystem::path& file : scene.inputs) out.text(file.string());
   out.plain(scene.unsimulated.size());
@@ -195,12 +193,12 @@ std::string scene_bytes(const Scene& scene) {
     out.plain(static_cast<std::uint8_t>(found.property));
     out.plain(found.materials);
   }
-  out.plain(scene.problems.size());
-  for (const Problem& problem : scene.problems) {
-    out.plain(static_cast<std::uint8_t>(problem.kind));
-    out.plain(problem.count);
-    out.text(problem.what);
-    out.plain(problem.area);
+  out.plain(scene.diagnostics.size());
+  for (const Diagnostic& found : scene.diagnostics) {
+    out.plain(static_cast<std::uint8_t>(found.code));
+    out.plain(found.count);
+    out.text(found.text);
+    out.plain(found.area);
   }
   out.plain(scene.rooms.size());
   for (const NamedRoom& room : scene.rooms) write_room(out, room);
@@ -224,10 +222,8 @@ Scene scene_from_bytes(std::string_view bytes) {
   for (Material& material : scene.materials) material = read_material(in, textures);
   scene.texture_maps.resize(in.count());
   for (TextureMap& map : scene.texture_maps) map = read_map(in);
-  for (auto* texts : {&scene.groups, &scene.notes}) {
-    texts->resize(in.count());
-    for (std::string& text : *texts) text = in.text();
-  }
+  scene.groups.resize(in.count());
+  for (std::string& group : scene.groups) group = in.text();
   scene.inputs.resize(in.count());
   for (std::filesystem::path& file : scene.inputs) file = in.text();
   scene.unsimulated.resize(in.count());
@@ -235,12 +231,12 @@ Scene scene_from_bytes(std::string_view bytes) {
     found.property = static_cast<UnsimulatedProperty>(in.plain<std::uint8_t>());
     found.materials = in.plain<std::size_t>();
   }
-  scene.problems.resize(in.count());
-  for (Problem& problem : scene.problems) {
-    problem.kind = static_cast<ProblemKind>(in.plain<std::uint8_t>());
-    problem.count = in.plain<std::size_t>();
-    problem.what = in.text();
-    problem.area = in.plain<double>();
+  scene.diagnostics.resize(in.count());
+  for (Diagnostic& found : scene.diagnostics) {
+    found.code = static_cast<DiagnosticCode>(in.plain<std::uint8_t>());
+    found.count = in.plain<std::size_t>();
+    found.text = in.text();
+    found.area = in.plain<double>();
   }
   scene.rooms.resize(in.count());
   for (NamedRoom& room : scene.rooms) room = read_room(in);

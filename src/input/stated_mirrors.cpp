@@ -48,10 +48,11 @@ Scene with_stated_mirrors(Scene scene) {
     mirrors.push_back(material.name + " (" + material.stated_mirror->by + ": specular reflectance " +
                       listed_shares(material.specular_reflectance) + ")");
   }
-  if (!mirrors.empty()) scene.notes.push_back(note_on_mirrors(mirrors, first));
-  for (std::string& note :
-       note_on("the specular reflectance of mirrors is lowered to what they do not reflect diffusely", darker))
-    scene.notes.push_back(std::move(note));
+  if (!mirrors.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_mirror, note_on_mirrors(mirrors, first)});
+  scene.diagnostics =
+      merged({std::move(scene.diagnostics),
+              note_on(DiagnosticCode::lowered_reflectance,
+                      "the specular reflectance of mirrors is lowered to what they do not reflect diffusely", darker)});
   return scene;
 }
 

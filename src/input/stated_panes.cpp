@@ -54,8 +54,9 @@ Scene without_doubtful_panes(Scene scene) {
   for (Material& material : scene.materials) {
     if (lets_all_through(material)) material = without_stated_pane(std::move(material));
   }
-  scene.notes.push_back("most materials would let all light through, so these are taken for opaque: " + listed(names) +
-                        "; read.settings " + names[0] + ".transmittance=1 makes one clear");
+  scene.diagnostics.push_back({DiagnosticCode::assumed_material,
+                               "most materials would let all light through, so these are taken for opaque: " +
+                                   listed(names) + "; read.settings " + names[0] + ".transmittance=1 makes one clear"});
   for (const UnsimulatedMaterials& glass : counted(0, names.size())) scene.unsimulated.push_back(glass);
   return scene;
 }
@@ -74,9 +75,10 @@ Scene with_stated_panes(Scene scene) {
     if ((material.reflectance > most + rounding).any()) darker.push_back(material.name);
     material.reflectance = material.reflectance.min(most);
   }
-  if (!panes.empty()) scene.notes.push_back(note_on_panes(panes, first));
-  for (std::string& note : note_on("the reflectance of panes is lowered to what they do not let through", darker))
-    scene.notes.push_back(std::move(note));
+  if (!panes.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_pane, note_on_panes(panes, first)});
+  scene.diagnostics = merged({std::move(scene.diagnostics),
+                              note_on(DiagnosticCode::lowered_reflectance,
+                                      "the reflectance of panes is lowered to what they do not let through", darker)});
   return scene;
 }
 

@@ -80,12 +80,14 @@ std::string MappedFaces::sentence(const Faces& faces, const std::string& what) c
   return what + ": " + std::to_string(faces.count) + first;
 }
 
-std::vector<std::string> MappedFaces::notes() const {
-  std::vector<std::string> notes;
+Diagnostics MappedFaces::notes() const {
+  Diagnostics notes;
   if (without_.count > 0)
-    notes.push_back(sentence(without_, "faces whose corners have no good place in their picture, whose mean counts"));
+    notes.push_back({DiagnosticCode::simplified_picture,
+                     sentence(without_, "faces whose corners have no good place in their picture, whose mean counts")});
   if (bent_.count > 0)
-    notes.push_back(sentence(bent_, "faces over which a picture is bent, which is taken as straight"));
+    notes.push_back({DiagnosticCode::simplified_picture,
+                     sentence(bent_, "faces over which a picture is bent, which is taken as straight")});
   return notes;
 }
 

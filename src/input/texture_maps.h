@@ -28,7 +28,7 @@ class MappedFaces {
   const std::vector<TextureMap>& maps() const { return maps_; }
 
   /// How many faces have no place in their picture, or a bent one, and which is the first.
-  std::vector<std::string> notes() const;
+  Diagnostics notes() const;
 
  private:
   struct Faces {

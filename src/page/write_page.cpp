@@ -20,23 +20,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// So many faces of a problem are shown.
+// So many faces of one code are shown.
 constexpr std::size_t most_problem_faces = 200;
 
-Json problems_part(const Scene& scene) {
-  Json problems = Json::array();
-  for (const Problem& problem : scene.problems) {
-    Json part{{"severity", name_of(severity_of(problem.kind))}, {"what", problem.what}};
-    part["outlines"] = Json::array();
-    const std::size_t shown = std::min(problem.faces.size(), most_problem_faces);
-    for (std::size_t k = 0; k < shown; ++k) {
+Json diagnostics_part(const Diagnostics& diagnostics) {
+  Json parts = json_of(diagnostics);
+  for (std::size_t n = 0; n < diagnostics.size(); ++n) {
+    const std::vector<ModelFace>& faces = diagnostics[n].faces;
+    parts[n]["outlines"] = Json::array();
+    for (std::size_t k = 0; k < std::min(faces.size(), most_problem_faces); ++k) {
       Json outline = Json::array();
-      for (const Point& corner : problem.faces[k].corners) outline.push_back(json_array(corner));
-      part["outlines"].push_back(std::move(outline));
+      for (const Point& corner : faces[k].corners) outline.push_back(json_array(corner));
+      parts[n]["outlines"].push_back(std::move(outline));
     }
-    problems.push_back(std::move(part));
   }
-  return problems;
+  return parts;
 }
 
 std::string caption_of(const Picture& picture) {
@@ -78,8 +76,7 @@ Json data_of(const Page& page) {
   data["file"] = page.scene.file;
   data["files"] = page.scene.files;
   data["sha256"] = page.scene.sha256;
-  data["scene_notes"] = page.scene.notes;
-  data["problems"] = problems_part(page.scene);
+  data["diagnostics"] = diagnostics_part(page.scene.diagnostics);
   if (page.report != nullptr) data["report"] = report_json(*page.report, page.provenance);
   if (page.readings != nullptr) data["sensors"] = sensor_maps(page.scene, *page.readings);
   data["pictures"] = Json::array();

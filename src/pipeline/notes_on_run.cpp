@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
-#include <utility>
 
 namespace patchlight {
 
 namespace {
 
 // Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
-std::vector<std::string> notes_on_chains(const World& world) {
+Diagnostics notes_on_chains(const World& world) {
   const Tracing& tracing = world.tracing();
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
   const MirrorChains& found = world.lighting().mirrors->paths.found();
@@ -25,24 +24,19 @@ std::vector<std::string> notes_on_chains(const World& world) {
        << 100 * std::min(1.0, found.unfollowed_share)
        << " % of the light that lamps, luminaires and sun send to these faces goes on by other chains. Error bars "
           "include it as if each face scattered it evenly";
-  return {text.str()};
+  return {{DiagnosticCode::unfollowed_reflection, text.str()}};
 }
 
 }  // namespace
 
-std::vector<std::string> notes_on_run(const World& world, const Plan& plan) {
+Diagnostics notes_on_run(const World& world, const Plan& plan) {
   const Scene& scene = world.scene();
-  std::vector<std::string> notes = plan.notes;
-  for (const Problem& problem : problems_with_overlaps(scene, world.tracing().coverings()))
-    notes.push_back(problem.what);
-  for (std::string& note : notes_on_chains(world)) notes.push_back(std::move(note));
-  if (refines(plan.accuracy)) return notes;
-  for (std::string& note : notes_on_close_lamps(scene, world.between_patches(), plan.max_edge))
-    notes.push_back(std::move(note));
-  return notes;
+  return merged(
+      {plan.notes, problems_with_overlaps(scene, world.tracing().coverings()), notes_on_chains(world),
+       refines(plan.accuracy) ? Diagnostics() : notes_on_close_lamps(scene, world.between_patches(), plan.max_edge)});
 }
 
-std::vector<std::string> notes_on_hidden_lamps(const Scene& scene, const Simulation& simulation) {
+Diagnostics notes_on_hidden_lamps(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
   const Eigen::VectorXd& overlaid = simulation.transport.lost.overlaid;
   const Occluder& occluder = simulation.world->between_patches();
@@ -52,11 +46,13 @@ std::vector<std::string> notes_on_hidden_lamps(const Scene& scene, const Simulat
     if (was_hidden && !occluder.is_covered(mesh.polygon[i], mesh.side[i], mesh.centroid[i]))
       names.insert(scene.materials[mesh.material[i]].name);
   }
-  std::vector<std::string> notes;
+  Diagnostics notes;
   for (const std::string& name : names)
-    notes.push_back("material '" + name +
-                    "' emits, but little light comes from it: faces of it lay under others when the form factors were "
-                    "made, as they were dark; compute them again with the present lamps");
+    notes.push_back(
+        {DiagnosticCode::lost_light,
+         "material '" + name +
+             "' emits, but little light comes from it: faces of it lay under others when the form factors were "
+             "made, as they were dark; compute them again with the present lamps"});
   return notes;
 }
 

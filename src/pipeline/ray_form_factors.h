@@ -6,8 +6,6 @@
 #include "transport/ray_exchange.h"
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
 
 namespace patchlight {
 
@@ -17,9 +15,9 @@ struct RayFormFactors {
   Plan plan;
   PatchMesh mesh;
   RayExchange exchange;
-  Eigen::VectorXd area;                 ///< m^2, exposed, of what patches hold
-  Eigen::VectorXd row_sum;              ///< what each patch sees: both of light of the mean of all colours
-  std::vector<std::string> notes = {};  ///< on polygons that lie one on the other
+  Eigen::VectorXd area;     ///< m^2, exposed, of what patches hold
+  Eigen::VectorXd row_sum;  ///< what each patch sees: both of light of the mean of all colours
+  Diagnostics notes = {};   ///< on polygons that lie one on the other
 };
 
 /// As find_form_factors() finds all pairs: what Steps::ray_exchange can give. \throws InputError, MemoryError,

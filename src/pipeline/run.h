@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -20,7 +19,7 @@ struct Run {
   const Scene& scene;  ///< World::planned_scene()
   const Request& request;
   const Plan& plan;
-  const std::vector<std::string>& notes;  ///< Simulation::notes
+  const Diagnostics& notes;  ///< Simulation::notes
   std::shared_ptr<const World> world;
   const Steps& with;
   const Observer& observer;

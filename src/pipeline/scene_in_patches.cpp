@@ -17,9 +17,7 @@ SceneInPatches scene_in_patches(const Scene& scene, Request request) {
   auto world = std::make_shared<const World>(std::make_shared<const Scene>(scene), plan);
   PatchMesh mesh = open_patches(scene, plan, plan.max_edge, world->between_patches());
   require_memory(mesh.size(), request, plan);
-  std::vector<std::string> notes;
-  for (const Problem& problem : problems_with_overlaps(scene, world->tracing().coverings()))
-    notes.push_back(problem.what);
+  Diagnostics notes = problems_with_overlaps(scene, world->tracing().coverings());
   return {std::move(request), std::move(plan), std::move(mesh), std::move(world), std::move(notes)};
 }
 

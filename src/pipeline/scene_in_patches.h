@@ -7,8 +7,6 @@
 #include "pipeline/world.h"
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace patchlight {
 
@@ -18,7 +16,7 @@ struct SceneInPatches {
   Plan plan;
   PatchMesh mesh;
   std::shared_ptr<const World> world;
-  std::vector<std::string> notes;  ///< on polygons that lie one on the other
+  Diagnostics notes;  ///< on polygons that lie one on the other
 };
 
 /// Without a lamp Sides::automatic means the front sides. \throws InputError, MemoryError.

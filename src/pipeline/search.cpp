@@ -217,7 +217,7 @@ void Search::keep(const Simulation& simulation) {
 SolvedMesh Search::noted(SolvedMesh solved) {
   solved.more_rays = more_rays_;
   if (solved.simulation.error_bars) steps_.push_back(step_of(solved));
-  solved.simulation.notes.insert(solved.simulation.notes.end(), notes_.begin(), notes_.end());
+  solved.simulation.notes = merged({std::move(solved.simulation.notes), notes_});
   solved.simulation.accuracy = steps_;
   const bool may_be_followed =
       refines(run_.plan.accuracy) || (!steps_.empty() && makes_second_mesh(run_, steps_[0].patches));
@@ -261,9 +261,11 @@ bool Search::may_go_by_rays(const Plan& plan) const {
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {
-  notes_.push_back("form factors of more than " + std::to_string(steps_.back().patches) +
-                   " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
-                   "takes do not fit into the memory");
+  notes_.push_back(
+      {DiagnosticCode::rows_of_rays,
+       "form factors of more than " + std::to_string(steps_.back().patches) +
+           " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
+           "takes do not fit into the memory"});
   return by_rays(plan);
 }
 
@@ -305,7 +307,8 @@ std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accur
 std::optional<MeshToSolve> Search::second(SolvedMesh& solved) {
   if (steps_.size() > 1) return std::nullopt;
   SecondMesh next = second_mesh(run_, solved, steps_.back());
-  if (!next.note.empty()) (next.mesh ? notes_ : solved.simulation.notes).push_back(std::move(next.note));
+  Diagnostics& notes = next.mesh ? notes_ : solved.simulation.notes;
+  notes = merged({std::move(notes), std::move(next.notes)});
   if (!next.mesh) return std::nullopt;
   return remembered(std::move(*next.mesh), true);
 }

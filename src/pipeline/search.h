@@ -53,7 +53,7 @@ class Search {
   double start_;      // wall-clock seconds
   double cpu_start_;  // processor seconds
   std::vector<AccuracyStep> steps_;
-  std::vector<std::string> notes_;
+  Diagnostics notes_;
   std::optional<Simulation> kept_;
   PatchIndex known_ = 0;  // patches of the last mesh of which something was known from the one before
   MoreRays more_rays_;    // of the last mesh

@@ -33,7 +33,7 @@ std::string errors_of_first(const AccuracyStep& errors) {
          " %: ";
 }
 
-std::string note_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
+Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
   const auto is_doubled = [&](std::size_t i) {
     const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
     return any(next.known.more_rays.to_lights) || any(next.known.more_rays.of_rows);
@@ -43,15 +43,17 @@ std::string note_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
   for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
   const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
   const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
-  return errors_of_first(errors) + "on a second one " + cuts + (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
-         "; accuracy.local_cuts=false stays with the first";
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "on a second one " + cuts +
+                                            (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
+                                            "; accuracy.local_cuts=false stays with the first"}};
 }
 
-std::string note_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
+Diagnostics notes_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
   const std::size_t patches = cuts.mesh.mesh.patches.size();
   const double bytes = memory_of_next_mesh(patches, times_the_rays(cuts), plan);
-  return errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
-         " patches, would err less and is not made, as it " + memory_refused(bytes, plan.resources);
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
+                                            " patches, would err less and is not made, as it " +
+                                            memory_refused(bytes, plan.resources)}};
 }
 
 }  // namespace
@@ -77,17 +79,18 @@ SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& e
   if (!pays) return {};
   const Plan& plan = solved.simulation.plan;
   if (!fits_as_next_mesh(cuts.mesh.mesh.patches.size(), times_the_rays(cuts), plan))
-    return {std::nullopt, note_on_memory(cuts, errors, plan)};
+    return {std::nullopt, notes_on_memory(cuts, errors, plan)};
   MeshToSolve mesh = mesh_with(std::move(cuts), solved);
-  std::string note = note_on_cuts(mesh, errors);
-  return {std::move(mesh), std::move(note)};
+  Diagnostics notes = notes_on_cuts(mesh, errors);
+  return {std::move(mesh), std::move(notes)};
 }
 
 Plan with_note_on_second_mesh(Plan plan, PatchIndex patches) {
   if (!makes_second_mesh(plan, patches) || fits_as_next_mesh(patches, 1, plan)) return plan;
-  plan.notes.push_back("a second mesh, which is made where the first errs by more than " + percent(usual_error) +
-                       " %, does not fit into the memory beside the first: it " +
-                       memory_refused(memory_of_next_mesh(patches, 1, plan), plan.resources));
+  plan.notes.push_back({DiagnosticCode::second_mesh,
+                        "a second mesh, which is made where the first errs by more than " + percent(usual_error) +
+                            " %, does not fit into the memory beside the first: it " +
+                            memory_refused(memory_of_next_mesh(patches, 1, plan), plan.resources)});
   return plan;
 }
 

@@ -3,7 +3,6 @@
 #include "pipeline/run.h"
 
 #include <optional>
-#include <string>
 
 namespace patchlight {
 
@@ -18,7 +17,7 @@ bool cuts_locally(const Run& run, PatchIndex patches);
 /// What a run by rays does after its first mesh.
 struct SecondMesh {
   std::optional<MeshToSolve> mesh;  ///< none: the first one is all
-  std::string note;                 ///< what is done, or why memory forbids it, for Simulation::notes; or empty
+  Diagnostics notes;                ///< that it is done, or why memory forbids it, for Simulation::notes
 };
 
 /// The mesh after the first one of such a run, by local_cuts(). What is known of the light on other patches is taken

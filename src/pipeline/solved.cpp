@@ -135,7 +135,7 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   if (run.scene.sky || run.scene.sun)
     simulation.enclosed = enclosed_patches(run.scene, run.world->all_faces(), simulation.mesh);
   if (run.with.exchange || run.with.ray_exchange) {
-    for (std::string& note : notes_on_hidden_lamps(run.scene, simulation)) simulation.notes.push_back(std::move(note));
+    simulation.notes = merged({std::move(simulation.notes), notes_on_hidden_lamps(run.scene, simulation)});
   }
 
   if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);

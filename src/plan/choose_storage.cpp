@@ -96,8 +96,9 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   const bool is_small = light.patches <= most_patches_with_more_rays;
   if (replaces_pairs || ((light.is_mirrored || light.has_goal) && is_small))
     chosen.request.assembly.rays = rays_replacing_pairs;
-  chosen.note = "form factors are sampled by rays (assembly.storage=rays), " + reason_for_rays(light, request, bytes) +
-                "\nhint: assembly.storage=tiles computes all pairs instead";
+  chosen.notes = {{DiagnosticCode::rows_of_rays, "form factors are sampled by rays (assembly.storage=rays), " +
+                                                     reason_for_rays(light, request, bytes) +
+                                                     "\nhint: assembly.storage=tiles computes all pairs instead"}};
   return chosen;
 }
 

@@ -3,7 +3,6 @@
 #include "patchlight/plan/plan.h"
 
 #include <cstddef>
-#include <string>
 
 namespace patchlight {
 
@@ -26,7 +25,7 @@ Plan by_rays(Plan plan);
 /// A request with its storage decided.
 struct ChosenStorage {
   Request request;
-  std::string note;  ///< why, where it is rows of rays; else empty
+  Diagnostics notes;  ///< why, where it is rows of rays
 };
 
 /// What there is to be stored.

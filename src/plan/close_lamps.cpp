@@ -2,7 +2,6 @@
 
 #include "visibility/occluder.h"
 
-#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -23,7 +22,7 @@ std::string advice_for(const Scene& scene, double nearest) {
 
 }  // namespace
 
-std::vector<std::string> notes_on_close_lamps(const Scene& scene, const Occluder& occluder, double max_edge) {
+Diagnostics notes_on_close_lamps(const Scene& scene, const Occluder& occluder, double max_edge) {
   std::vector<Ray> rays;
   std::vector<PolygonIndex> lamps;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -53,7 +52,7 @@ std::vector<std::string> notes_on_close_lamps(const Scene& scene, const Occluder
        << nearest << " m, patches up to " << max_edge
        << " m): the light between them is spread too far and the answer may be wrong by a factor; "
        << advice_for(scene, nearest);
-  return {note.str()};
+  return {{DiagnosticCode::close_lamp, note.str(), count}};
 }
 
 }  // namespace patchlight

@@ -1,5 +1,7 @@
 #include "plan/decide.h"
 
+#include "scene/model_face.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -24,10 +26,6 @@ std::string number(double value) {
   text.precision(3);
   text << value;
   return text.str();
-}
-
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 Decision occlusion(const EffectFacts& facts) {
@@ -259,12 +257,13 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request) {
   return decisions;
 }
 
-std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request) {
-  std::vector<std::string> notes;
+Diagnostics notes_on_overruling(const EffectFacts& facts, const Request& request) {
+  Diagnostics notes;
   const auto add = [&](const std::string& field, const std::vector<Effect>& effects) {
     for (const Effect effect : effects) {
       if (!is_there(effect, facts))
-        notes.push_back(field + "=" + name_of(effect) + " changes nothing: the scene has nothing of it");
+        notes.push_back({DiagnosticCode::idle_option,
+                         field + "=" + name_of(effect) + " changes nothing: the scene has nothing of it"});
     }
   };
   add("effects.force", request.effects.force);

@@ -5,7 +5,6 @@
 
 #include "plan/effect_facts.h"
 
-#include <string>
 #include <vector>
 
 namespace patchlight {
@@ -20,6 +19,6 @@ std::vector<Decision> decide(const EffectFacts& facts, const Request& request);
 Decision closed_by_rays();
 
 /// A note on every effect that is to be forced or skipped and of which the scene has nothing.
-std::vector<std::string> notes_on_overruling(const EffectFacts& facts, const Request& request);
+Diagnostics notes_on_overruling(const EffectFacts& facts, const Request& request);
 
 }  // namespace patchlight

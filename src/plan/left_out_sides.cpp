@@ -33,11 +33,12 @@ std::vector<std::string> dark_lamps(const Scene& scene, const KeptSides& kept) {
 
 }  // namespace
 
-std::vector<std::string> notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, Sides sides) {
-  std::vector<std::string> notes;
+Diagnostics notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, Sides sides) {
+  Diagnostics notes;
   for (const std::string& name : dark_lamps(scene, kept)) {
-    notes.push_back("material '" + name + "' emits, but no light comes from it: its faces were left out of the " +
-                    "form factors" + advice);
+    notes.push_back({DiagnosticCode::lost_light,
+                     "material '" + name + "' emits, but no light comes from it: its faces were left out of the " +
+                         "form factors" + advice});
   }
   const KeptSides now = kept_sides(scene, sides);
   std::size_t left_out = 0;
@@ -45,9 +46,11 @@ std::vector<std::string> notes_on_left_out_sides(const Scene& scene, const KeptS
     for (const Side side : {Side::front, Side::back}) left_out += is_kept(now, p, side) && !is_kept(kept, p, side);
   }
   if (left_out == 0) return notes;
-  notes.push_back("with these lamps " + std::to_string(left_out) + (left_out == 1 ? " side" : " sides") +
-                  " of faces would take part that did not when the form factors were made: light that arrives there " +
-                  "is lost" + advice);
+  notes.push_back(
+      {DiagnosticCode::lost_light,
+       "with these lamps " + std::to_string(left_out) + (left_out == 1 ? " side" : " sides") +
+           " of faces would take part that did not when the form factors were made: light that arrives there " +
+           "is lost" + advice});
   return notes;
 }
 

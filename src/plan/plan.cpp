@@ -18,14 +18,13 @@
 #include "plan/survey.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -55,17 +54,16 @@ std::string note_on_kept(const std::string& faces, std::size_t corners) {
 // What is worth saying of outlines that are finer than patches, in a mesh with edges of at most `max_edge` metres: of
 // which faces patches follow a coarser outline; and which take a quarter of the `asked` patches or more for their
 // corners alone, 0 standing for no such number.
-std::vector<std::string> notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked,
-                                                double max_edge) {
+Diagnostics notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked, double max_edge) {
   constexpr std::size_t parts = 4;  // of the patches asked for: a face that takes as many is worth a word
   constexpr std::size_t few = 24;   // corners that a round face keeps however large patches are
   const std::vector<std::size_t> left_out = left_out_corners(scene, max_edge);
-  std::vector<ProblemFace> coarse, kept;
+  std::vector<ModelFace> coarse, kept;
   std::size_t most = 0, most_left_out = 0, most_kept = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const std::size_t corners = scene.polygons[p].corners.size();
     if (!(sides.front[p] || sides.back[p]) || corners <= 4) continue;
-    const auto face = [&] { return problem_face(scene, scene.polygons[p]); };
+    const auto face = [&] { return model_face(scene, scene.polygons[p]); };
     if (left_out[p] > 0) {
       coarse.push_back(face());
       most = std::max(most, corners);
@@ -76,9 +74,11 @@ std::vector<std::string> notes_on_fine_outlines(const Scene& scene, const KeptSi
     kept.push_back(face());
     most_kept = std::max(most_kept, corners - left_out[p]);
   }
-  std::vector<std::string> notes;
-  if (!coarse.empty()) notes.push_back(note_on_coarse(listed(scene, coarse), most, most_left_out, max_edge));
-  if (!kept.empty()) notes.push_back(note_on_kept(listed(scene, kept), most_kept));
+  Diagnostics notes;
+  if (!coarse.empty())
+    notes.push_back(
+        {DiagnosticCode::fine_outline, note_on_coarse(listed(scene, coarse), most, most_left_out, max_edge)});
+  if (!kept.empty()) notes.push_back({DiagnosticCode::fine_outline, note_on_kept(listed(scene, kept), most_kept)});
   return notes;
 }
 
@@ -114,8 +114,8 @@ std::string trouble_at(const Luminaire& luminaire, double height, const Vector& 
 // A sentence for each luminaire that lies up to 1 mm behind an opaque face towards which it shines, but not in its
 // plane: its light falls on the side that is not meant, as on the roof when it is a little over the ceiling. And for
 // each that shines in all directions from the plane of an opaque face: half of its light goes to either side.
-std::vector<std::string> notes_on_luminaires_behind(const Scene& scene) {
-  std::vector<std::string> notes;
+Diagnostics notes_on_luminaires_behind(const Scene& scene) {
+  Diagnostics notes;
   const double nearest = in_plane * extent_of(scene);
   for (const Luminaire& luminaire : scene.luminaires) {
     for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -124,8 +124,9 @@ std::vector<std::string> notes_on_luminaires_behind(const Scene& scene) {
       if (std::abs(height) > farthest || is_opening(scene, p)) continue;
       const std::string trouble = trouble_at(luminaire, height, normal, nearest);
       if (trouble.empty() || !lies_over(luminaire.position, corner_points(scene, p), normal)) continue;
-      notes.push_back("luminaire '" + luminaire.name + "' (" + luminaire.place + ") lies " + trouble + " (" +
-                      place_of(scene, scene.polygons[p]) + "); move it if that is not meant");
+      notes.push_back({DiagnosticCode::misplaced_luminaire,
+                       "luminaire '" + luminaire.name + "' (" + luminaire.place + ") lies " + trouble + " (" +
+                           place_of(scene, scene.polygons[p]) + "); move it if that is not meant"});
       break;
     }
   }
@@ -156,30 +157,33 @@ bool simulates(const std::vector<Decision>& decisions, Effect effect) {
 }
 
 // A sun below the horizon gives no light.
-std::vector<std::string> notes_on_sun(const Scene& scene) {
+Diagnostics notes_on_sun(const Scene& scene) {
   if (!scene.sun || scene.sun->direction.dot(scene.up) > 0) return {};
   const double altitude = std::asin(std::max(-1.0, scene.sun->direction.dot(scene.up))) * 180 / std::numbers::pi;
   std::ostringstream text;
   text.precision(3);
   text << "the sun is " << -altitude << " degrees below the horizon and gives no light";
-  return {text.str()};
+  return {{DiagnosticCode::sun_below_horizon, text.str()}};
 }
 
-std::vector<std::string> notes_on_sheets(const EffectFacts& facts) {
+Diagnostics notes_on_sheets(const EffectFacts& facts) {
   if (facts.sheets == 0) return {};
-  return {std::to_string(facts.sheets) +
-          (facts.sheets == 1 ? " face is a translucent sheet" : " faces are translucent sheets") +
-          ", simulated on both sides; only the solvers gmres, bicgstab and jacobi can be used"};
+  return {{DiagnosticCode::translucent_sheet,
+           std::to_string(facts.sheets) +
+               (facts.sheets == 1 ? " face is a translucent sheet" : " faces are translucent sheets") +
+               ", simulated on both sides; only the solvers gmres, bicgstab and jacobi can be used",
+           facts.sheets}};
 }
 
 // What solve takes rows of rays for.
-std::vector<std::string> notes_on_pairs(const Scene& scene, const Request& request) {
+Diagnostics notes_on_pairs(const Scene& scene, const Request& request) {
   if (!keeps_entries(request.assembly.storage)) return {};
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (is_reflecting_pane(scene, p) || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back))
       return {
-          "the pair method ignores light that glazing and mirrors reflect\nhint: assembly.storage=rays, as a solve "
-          "does by itself"};
+          {DiagnosticCode::unfollowed_reflection,
+           "the pair method ignores light that glazing and mirrors reflect\nhint: assembly.storage=rays, as a solve "
+           "does by itself"}};
   }
   return {};
 }
@@ -196,19 +200,12 @@ std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t w
          " patches, not " + std::to_string(asked) + ", so that large faces are divided as well";
 }
 
-std::vector<std::string> joined(std::vector<std::vector<std::string>> lists) {
-  std::vector<std::string> all;
-  for (std::vector<std::string>& list : lists)
-    all.insert(all.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
-  return all;
-}
-
 // How finely the kept sides are cut.
 struct PatchSize {
   double max_edge = 0;      // metres
   std::size_t patches = 0;  // about so many, or the least that the edge allows
   std::size_t around = 0;   // of these those of the surroundings of the goal
-  std::vector<std::string> notes;
+  Diagnostics notes;
 };
 
 // The kept sides with their lines, and what is known of the number of their patches.
@@ -266,7 +263,8 @@ PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& r
       wanted + around,
       around,
       {}};
-  if (wanted > asked && !refines(request.accuracy)) size.notes.push_back(note_on_patches(of.scene, asked, wanted));
+  if (wanted > asked && !refines(request.accuracy))
+    size.notes.push_back({DiagnosticCode::more_patches, note_on_patches(of.scene, asked, wanted)});
   return size;
 }
 
@@ -276,10 +274,8 @@ PatchSize patch_size(const Outlined& of, const Request& request) {
   PatchSize size = request.mesh.max_edge ? PatchSize{*request.mesh.max_edge, expected_patches(of, request), 0, {}}
                                          : patch_size_for(asked, of, request);
   const double outline_edge = has_error_bars(request.accuracy) ? 2 * size.max_edge : size.max_edge;
-  std::vector<std::string> of_size;
-  for (Problem& problem : problems_with_size(of.scene)) of_size.push_back(std::move(problem.what));
-  size.notes = joined(
-      {std::move(of_size), std::move(size.notes), notes_on_fine_outlines(of.scene, of.sides, asked, outline_edge)});
+  size.notes = merged({problems_with_size(of.scene), std::move(size.notes),
+                       notes_on_fine_outlines(of.scene, of.sides, asked, outline_edge)});
   return size;
 }
 
@@ -343,7 +339,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
       (has_reflections(facts) && !contains(asked.effects.skip, Effect::mirrors)) || facts.coloured_specular > 0;
   EdgeSearch search(scene, of_goal, contacts);
   const Outlined outlined{scene, of_goal, contacts, search, goal.get()};
-  const auto [request, note_on_storage] =
+  const auto [request, notes_on_storage] =
       choose_storage(asked, given,
                      {.patches = expected_patches(outlined, asked) + kept_side_count(sides) - kept_side_count(of_goal),
                       .sides = kept_side_count(sides),
@@ -353,7 +349,6 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
                       .has_sensors = !scene.sensors.empty()});
   require_rays_for_colours(facts.coloured_specular, request, asked, given);
   PatchSize size = patch_size(outlined, request);
-  if (!note_on_storage.empty()) size.notes.push_back(note_on_storage);
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
 
@@ -374,9 +369,9 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
           .resources = request.resources,
           .decisions = std::move(decisions),
           .lamp_colour = !in_colour && one_colour ? *facts.lamp_colour : Spectrum(),
-          .notes = joined({std::move(size.notes), std::move(notes_on_contacts), notes_on_overruling(facts, request),
-                           notes_on_sun(scene), notes_on_sheets(facts), notes_on_luminaires_behind(scene),
-                           request.mesh.kept_sides ? left_out() : std::vector<std::string>()})};
+          .notes = merged({std::move(size.notes), notes_on_storage, std::move(notes_on_contacts),
+                           notes_on_overruling(facts, request), notes_on_sun(scene), notes_on_sheets(facts),
+                           notes_on_luminaires_behind(scene), request.mesh.kept_sides ? left_out() : Diagnostics()})};
 }
 
 Plan plan_form_factors(const Scene& scene, const Request& request) {
@@ -386,7 +381,6 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
   auto [contacts, notes_on_contacts] = planned_lines(scene, request, sides, *coverings, false);
   EdgeSearch search(scene, sides, contacts);
   PatchSize size = patch_size({scene, sides, contacts, search}, request);
-  for (std::string& note : notes_on_pairs(scene, request)) size.notes.push_back(std::move(note));
   const bool close = request.assembly.close && keeps_entries(request.assembly.storage) &&
                      !contains(request.effects.skip, Effect::closure);
   return {.sides = std::move(sides),
@@ -399,7 +393,7 @@ Plan plan_form_factors(const Scene& scene, const Request& request) {
           .accuracy = decided(request.accuracy),
           .resources = request.resources,
           .decisions = {},
-          .notes = joined({std::move(size.notes), std::move(notes_on_contacts)})};
+          .notes = merged({std::move(size.notes), notes_on_pairs(scene, request), std::move(notes_on_contacts)})};
 }
 
 bool refines(const AccuracyOptions& accuracy) { return accuracy.relative_error || accuracy.seconds; }

@@ -82,13 +82,13 @@ ContactLines longest_of(const ContactLines& all, std::size_t number) {
   return some;
 }
 
-std::vector<std::string> note_on_bent_faces(const std::vector<std::uint8_t>& is_bent) {
+Diagnostics note_on_bent_faces(const std::vector<std::uint8_t>& is_bent) {
   const auto number = std::count(is_bent.begin(), is_bent.end(), 1);
   if (number == 0) return {};
-  return {std::to_string(number) +
-          " faces are bent by rounding, or beside such faces, by more than touching faces may be apart; on these "
-          "patches follow the outline "
-          "alone, wherever others touch them"};
+  return {{DiagnosticCode::contact_lines,
+           std::to_string(number) +
+               " faces are bent by rounding, or beside such faces, by more than touching faces may be apart; on these "
+               "patches follow the outline alone, wherever others touch them"}};
 }
 
 // The long lines are those on which much light depends: where all are too many, half of them are followed, or half of
@@ -120,11 +120,12 @@ PlannedLines contacts_for(const Scene& scene, const Request& request, const Kept
   PlannedLines planned{{}, note_on_bent_faces(bent_faces(scene))};
   const ContactLines all = find_contact_lines(scene, sides);
   if (all.everywhere)
-    planned.notes.push_back("faces touch or cross nearly everywhere; patches follow the outlines of faces alone");
+    planned.notes.push_back({DiagnosticCode::contact_lines,
+                             "faces touch or cross nearly everywhere; patches follow the outlines of faces alone"});
   if (all.on.empty()) return planned;
   planned.lines = followed_of(all, scene, request, sides);
   if (const std::size_t number = number_of(planned.lines); number < number_of(all))
-    planned.notes.push_back(note_on_lines(number_of(all), number));
+    planned.notes.push_back({DiagnosticCode::contact_lines, note_on_lines(number_of(all), number)});
   return planned;
 }
 
@@ -171,8 +172,10 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
   // Shadows may take as much room again as contacts.
   const Room room = room_for_lines(scene, request, sides);
   const bool fits = number <= most_lines && number_of_patches(scene, sides, room.max_edge, all) <= 2 * room.most;
-  planned.notes.push_back(std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
-                          (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them"));
+  planned.notes.push_back(
+      {DiagnosticCode::shadow_edges,
+       std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
+           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them")});
   if (fits) planned.lines = std::move(all);
   return planned;
 }

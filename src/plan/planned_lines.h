@@ -6,15 +6,12 @@
 
 #include "scene/coverings.h"
 
-#include <string>
-#include <vector>
-
 namespace patchlight {
 
 /// The lines at which patches end, and what there is to say of them.
 struct PlannedLines {
   ContactLines lines;
-  std::vector<std::string> notes;
+  Diagnostics notes;
 };
 
 /// Lines of contact, and the edges of hard shadows where the mesh may know of lights. What is worth a line where an

@@ -1,6 +1,6 @@
 #include "plan/survey.h"
 
-#include "patchlight/scene/problem.h"
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
@@ -48,7 +48,7 @@ std::optional<double> near_distance(const Scene& scene, PolygonIndex polygon, co
 // Farther off than masts are high, and than the model is long.
 constexpr double farthest_luminaire = 30;  // metres
 
-std::vector<Problem> problems_of_far_ones(const Scene& scene) {
+Diagnostics problems_of_far_ones(const Scene& scene) {
   if (scene.luminaires.empty()) return {};
   const Box box = bounds(scene);
   const double length = box.diagonal().norm();
@@ -62,16 +62,15 @@ std::vector<Problem> problems_of_far_ones(const Scene& scene) {
   }
   if (far.empty()) return {};
   const bool is_one = far.size() == 1;
-  return {{ProblemKind::implausible_size,
-           far.size(),
+  return {{DiagnosticCode::implausible_size,
            (is_one ? "1 luminaire lies " : std::to_string(far.size()) + " luminaires lie up to ") + rounded(farthest) +
                " m from the model, which is " + rounded(length) + " m long (the first: " + far.front() + "). " +
                (is_one ? "Is its position in the unit of its file?" : "Are their positions in the unit of their file?"),
-           {}}};
+           far.size()}};
 }
 
 // Spheres that faces cut: what of their light starts behind the face falls on its other side.
-std::vector<Problem> problems_of_cut_ones(const Scene& scene) {
+Diagnostics problems_of_cut_ones(const Scene& scene) {
   std::size_t count = 0;
   std::string first;
   std::optional<BoxRow> row;
@@ -96,20 +95,17 @@ std::vector<Problem> problems_of_cut_ones(const Scene& scene) {
   }
   if (count == 0) return {};
   return {
-      {ProblemKind::implausible_size,
-       count,
+      {DiagnosticCode::implausible_size,
        (count == 1 ? "1 sphere luminaire is" : std::to_string(count) + " sphere luminaires are") +
            " cut by faces (the first: " + first +
            "): light of the part behind the face falls on its other side. Move the luminaire away, or make it smaller",
-       {}}};
+       count}};
 }
 
 // That luminaires are farther from the model than it is long, and than 30 m; and that faces cut the spheres of some.
 // O(spheres x log n) for n polygons, and O(n) where there are spheres.
-std::vector<Problem> problems_with_luminaires(const Scene& scene) {
-  std::vector<Problem> problems = problems_of_far_ones(scene);
-  for (Problem& problem : problems_of_cut_ones(scene)) problems.push_back(std::move(problem));
-  return problems;
+Diagnostics problems_with_luminaires(const Scene& scene) {
+  return merged({problems_of_far_ones(scene), problems_of_cut_ones(scene)});
 }
 
 // A model is between a part of a chair and a large building, or a site with buildings of some height. Meters.
@@ -154,31 +150,27 @@ std::optional<UnitGuess> guess_unit(const Scene& scene, const Vector& sides) {
                        " m, the size of a room or a building"};
 }
 
-std::vector<Problem> problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, const Vector& sides) {
+Diagnostics problems_of_size(const Scene& scene, const std::optional<UnitGuess>& guess, const Vector& sides) {
   if (scene.unit_stated || is_plausible(sides)) return {};
   const double size = sides.maxCoeff();
   const std::string advice =
       guess ? "perhaps its unit is " + guess->unit + ", as then " + guess->reason +
                   ": read.metres_per_unit=" + shortest(guess->metres_per_unit)
             : "no unit makes it the size of a room; radiances do not depend on it, lengths and fluxes do";
-  return {
-      {ProblemKind::implausible_size,
-       1,
-       "the model is " + rounded(size) + " m long with " + rounded(scene.metres_per_unit) + " m per unit; " + advice,
-       {}}};
+  return {{DiagnosticCode::implausible_size, "the model is " + rounded(size) + " m long with " +
+                                                 rounded(scene.metres_per_unit) + " m per unit; " + advice}};
 }
 
-std::vector<Problem> problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
+Diagnostics problems_with_reflectance(const std::vector<MaterialFacts>& materials) {
   std::vector<std::string> names;
   for (const MaterialFacts& facts : materials) {
     if ((facts.material.reflectance >= 1).any()) names.push_back(facts.material.name);
   }
   if (names.empty()) return {};
-  return {{ProblemKind::full_reflectance,
-           names.size(),
+  return {{DiagnosticCode::full_reflectance,
            "reflectance 1 (Kd), so nothing is absorbed: " + first_few(names) +
                "; it is taken as it is. Real surfaces stay below 0.9, and a closed room of reflectance 1 has no answer",
-           {}}};
+           names.size()}};
 }
 
 std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
@@ -263,14 +255,12 @@ SideCounts count_sides(const Scene& scene, Sides sides) {
   return {chosen, count(kept.front) + count(kept.back), kept_area(scene, kept), kept.notes};
 }
 
-std::vector<Problem> problems_with_size(const Scene& scene) {
+Diagnostics problems_with_size(const Scene& scene) {
   const Vector sides = main_bounds(scene).sizes();
-  std::vector<Problem> problems = problems_of_size(scene, guess_unit(scene, sides), sides);
-  for (Problem& problem : problems_with_luminaires(scene)) problems.push_back(std::move(problem));
-  return problems;
+  return merged({problems_of_size(scene, guess_unit(scene, sides), sides), problems_with_luminaires(scene)});
 }
 
-std::vector<Problem> problems_with_sensors(const Scene& scene) {
+Diagnostics problems_with_sensors(const Scene& scene) {
   // A grid of half a metre over 150 x 150 m has as many.
   constexpr std::size_t many_sensors = 100'000;
   std::size_t count = 0;
@@ -281,13 +271,12 @@ std::vector<Problem> problems_with_sensors(const Scene& scene) {
   Box box;
   for (const Sensor& sensor : largest.sensors) box.extend(sensor.point);
   const std::string line = largest.lines.empty() ? std::string() : ":" + std::to_string(largest.lines.front());
-  return {{ProblemKind::implausible_size,
-           count,
+  return {{DiagnosticCode::implausible_size,
            std::to_string(count) + " sensors are asked for, which takes long; the largest group, '" + largest.name +
                "' (" + largest.file + line + "), has " + std::to_string(largest.sensors.size()) + " of them over " +
                rounded(box.sizes().maxCoeff()) +
                " m. Is the model in the unit that is stated? If it is, a larger spacing has fewer sensors",
-           {}}};
+           count}};
 }
 
 SceneReport survey(const Scene& scene) {
@@ -314,20 +303,15 @@ SceneReport survey(const Scene& scene) {
   const Vector sides = main_bounds(scene).sizes();
   report.unit_guess = guess_unit(scene, sides);
   report.usable = has_lamp(scene);
-  report.problems = scene.problems;
-  const auto add = [&report](const std::vector<Problem>& problems) {
-    report.problems.insert(report.problems.end(), problems.begin(), problems.end());
-  };
-  add(problems_of_size(scene, report.unit_guess, sides));
-  add(problems_with_luminaires(scene));
-  add(problems_with_sensors(scene));
-  add(problems_with_reflectance(report.materials));
-  add(problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic))));
+  Diagnostics found =
+      merged({scene.diagnostics, problems_of_size(scene, report.unit_guess, sides), problems_with_luminaires(scene),
+              problems_with_sensors(scene), problems_with_reflectance(report.materials),
+              problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic)))});
   if (!report.usable) {
     report.first_light = first_light(scene);
-    add({{ProblemKind::no_lamp, 1, report.first_light->advice, {}}});
+    found.push_back({DiagnosticCode::no_lamp, report.first_light->advice});
   }
-  report.problems = worst_first(std::move(report.problems));
+  report.diagnostics = worst_first(std::move(found));
   return report;
 }
 

@@ -39,9 +39,9 @@ struct UnitGuess {
 /// The sides of polygons that take part in a solve.
 struct SideCounts {
   Sides chosen = Sides::automatic;
-  std::size_t kept = 0;            ///< of twice as many as there are polygons
-  double area = 0;                 ///< m^2
-  std::vector<std::string> notes;  ///< what was left out, and why
+  std::size_t kept = 0;  ///< of twice as many as there are polygons
+  double area = 0;       ///< m^2
+  Diagnostics notes;     ///< what was left out, and why
 };
 
 /// What a scene holds and what is wrong with it.
@@ -57,9 +57,9 @@ struct SceneReport {
   std::size_t lamps = 0;                 ///< emitting polygons
   std::size_t shells = 0;                ///< sets of polygons connected by shared edges
   std::size_t closed_shells = 0;
-  std::size_t open_edges = 0;     ///< edges of one polygon only: the rims of openings and of sheets
-  double open_edge_length = 0;    ///< metres
-  std::vector<Problem> problems;  ///< those of reading and repair and those found here, worst first
+  std::size_t open_edges = 0;   ///< edges of one polygon only: the rims of openings and of sheets
+  double open_edge_length = 0;  ///< metres
+  Diagnostics diagnostics;      ///< those of the scene and those found here, worst first
   std::optional<UnitGuess> unit_guess;
   std::optional<SideCounts> sides = {};        ///< when they are counted: count_sides()
   bool usable = true;                          ///< false when nothing emits: it cannot be solved
@@ -71,10 +71,10 @@ SceneReport survey(const Scene& scene);
 
 /// That a model is smaller than 0.4 m or larger than 150 m, what is far from the rest apart, with the unit that would
 /// make it the size of a room; and what problems_with_luminaires() tells. Nothing for others.
-std::vector<Problem> problems_with_size(const Scene& scene);
+Diagnostics problems_with_size(const Scene& scene);
 
 /// That more than 100,000 sensors are asked for. Nothing for fewer.
-std::vector<Problem> problems_with_sensors(const Scene& scene);
+Diagnostics problems_with_sensors(const Scene& scene);
 
 /// The sky's kind as in a scene file.
 const char* name_of(SkyKind kind);

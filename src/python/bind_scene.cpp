@@ -81,13 +81,14 @@ py::list materials_of(const py::object& self) {
 
 py::list problems_of(const Scene& scene) {
   py::list list;
-  for (const Problem& problem : scene.problems) {
+  for (const Diagnostic& problem : scene.diagnostics) {
+    if (is_note(problem.code)) continue;
     py::dict entry;
-    entry["kind"] = name_of(problem.kind);
-    entry["severity"] = name_of(severity_of(problem.kind));
-    entry["makes_results_wrong"] = makes_results_wrong(problem.kind);
+    entry["kind"] = name_of(problem.code);
+    entry["severity"] = name_of(severity_of(problem.code));
+    entry["makes_results_wrong"] = makes_results_wrong(problem.code);
     entry["count"] = problem.count;
-    entry["what"] = problem.what;
+    entry["what"] = problem.text;
     list.append(entry);
   }
   return list;
@@ -113,7 +114,7 @@ void bind_scene(py::module_& module) {
       .def_readonly("groups", &Scene::groups)
       .def_readonly("file", &Scene::file)
       .def_readonly("sha256", &Scene::sha256)
-      .def_readonly("notes", &Scene::notes)
+      .def_property_readonly("notes", [](const Scene& scene) { return texts_of(chosen(scene.diagnostics, is_note)); })
       .def_property_readonly("problems", &problems_of)
       .def_property_readonly("polygons", [](const Scene& scene) { return scene.polygons.size(); })
       .def_property_readonly("sensor_groups",

@@ -124,7 +124,9 @@ py::bytes page_of_run(const SolvedScene& self) {
   return html;
 }
 
-std::vector<std::string> notes_of(const SolvedScene& self) { return cli::notes(*self.scene, self.simulation); }
+std::vector<std::string> notes_of(const SolvedScene& self) {
+  return texts_of(cli::notes(*self.scene, self.simulation));
+}
 
 // Why results are worse than what was asked for.
 std::vector<std::string> shortcomings_of(const SolvedScene& self) {
@@ -162,7 +164,7 @@ py::dict sensors_of(const SolvedScene& self) {
   result["value"] = array_of(values).attr("ravel")();
   result["value_error"] = array_of(errors).attr("ravel")();
   if (readings.outside_by_sky) result["daylight_factor"] = array_of(factors).attr("ravel")();
-  result["warnings"] = view.warnings;
+  result["warnings"] = texts_of(view.warnings);
   return result;
 }
 

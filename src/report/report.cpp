@@ -30,7 +30,7 @@ SceneFacts scene_facts(const Scene& scene) {
           .up = scene.up,
           .up_stated = scene.up_stated,
           .size = bounds(scene).diagonal(),
-          .warnings = warnings_of(scene),
+          .warnings = chosen(scene.diagnostics, makes_results_wrong),
           .notes = remarks_of(scene),
           .bands = bands_of(scene)};
 }
@@ -175,8 +175,7 @@ const char* name_of(RoomSurface surface) {
   return "";
 }
 
-SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings,
-                         std::vector<std::string> warnings) {
+SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings, Diagnostics warnings) {
   return {.groups = by_group(groups, readings),
           .unit = sensor_unit(readings),
           .daylight = readings.outside_by_sky.has_value(),

@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 #include "scene/triangulate.h"
@@ -258,10 +258,10 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   return none ? Coverings{} : Coverings{std::move(over)};
 }
 
-std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
-  std::vector<ProblemFace> faces;
-  std::vector<ProblemFace> of_solids;
-  std::vector<ProblemFace> lamps;
+Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
+  std::vector<ModelFace> faces;
+  std::vector<ModelFace> of_solids;
+  std::vector<ModelFace> lamps;
   const auto area_of = [&](PolygonIndex p) { return area_vector(corner_points(scene, p)).norm(); };
   for (PolygonIndex p = 0; 2 * std::size_t{p} < coverings.over.size(); ++p) {
     bool is_covered = false;
@@ -277,24 +277,24 @@ std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings&
       is_dark_lamp = is_dark_lamp || emits(scene, p, side);
     }
     if (!is_covered && !is_hidden) continue;
-    const ProblemFace face = problem_face(scene, scene.polygons[p]);
+    const ModelFace face = model_face(scene, scene.polygons[p]);
     if (is_covered) faces.push_back(face);
     if (is_hidden) of_solids.push_back(face);
     if (is_dark_lamp) lamps.push_back(face);
   }
-  std::vector<Problem> problems;
-  const auto add = [&](ProblemKind kind, std::vector<ProblemFace> concerned, const std::string& what) {
+  Diagnostics problems;
+  const auto add = [&](DiagnosticCode code, std::vector<ModelFace> concerned, const std::string& what) {
     if (concerned.empty()) return;
     const std::size_t count = concerned.size();
     const std::string text = listed(scene, concerned) + (count == 1 ? " lies" : " lie") + what;
-    problems.push_back({kind, count, text, std::move(concerned)});
+    problems.push_back({code, text, count, std::move(concerned)});
   };
-  add(ProblemKind::covered_lamp, std::move(lamps),
+  add(DiagnosticCode::covered_lamp, std::move(lamps),
       " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
-  add(ProblemKind::overlapping_faces, std::move(faces),
+  add(DiagnosticCode::overlapping_faces, std::move(faces),
       " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first, "
       "and no error bar has what that changes");
-  add(ProblemKind::overlapping_faces, std::move(of_solids),
+  add(DiagnosticCode::overlapping_faces, std::move(of_solids),
       " against a larger one that is seen from both sides, with a solid behind, which is taken to stand before it and "
       "not to be seen from beyond; where a solid is let into a face, that has to be cut out there");
   return problems;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/scene/problem.h"
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
@@ -32,8 +32,8 @@ struct Coverings {
 /// cover or are covered. Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 
-/// ProblemKind::overlapping_faces with the polygons that are covered in part, and ProblemKind::covered_lamp with those
-/// of them that emit there; nothing when there are none.
-std::vector<Problem> problems_with_overlaps(const Scene& scene, const Coverings& coverings);
+/// DiagnosticCode::overlapping_faces with the polygons that are covered in part, and DiagnosticCode::covered_lamp with
+/// those of them that emit there; nothing when there are none.
+Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& coverings);
 
 }  // namespace patchlight

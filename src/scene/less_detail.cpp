@@ -209,11 +209,13 @@ Scene with_less_detail(Scene scene, double detail) {
     }
   }
   if (left_out + boxes == 0 || polygons.empty()) return scene;
-  scene.notes.push_back("detail below " + rounded(100 * detail, 3) + " cm: " + std::to_string(left_out) +
-                        (left_out == 1 ? " body, " : " bodies, ") + share(area_left_out, area) + ", left out; " +
-                        std::to_string(boxes) + (boxes == 1 ? " body, " : " bodies, ") + share(area_of_boxes, area) +
-                        ", taken as boxes; " + std::to_string(scene.polygons.size()) + " faces are " +
-                        std::to_string(polygons.size()));
+  scene.diagnostics.push_back(
+      {DiagnosticCode::reduced_model, "detail below " + rounded(100 * detail, 3) + " cm: " + std::to_string(left_out) +
+                                          (left_out == 1 ? " body, " : " bodies, ") + share(area_left_out, area) +
+                                          ", left out; " + std::to_string(boxes) +
+                                          (boxes == 1 ? " body, " : " bodies, ") + share(area_of_boxes, area) +
+                                          ", taken as boxes; " + std::to_string(scene.polygons.size()) + " faces are " +
+                                          std::to_string(polygons.size())});
   scene.polygons = std::move(polygons);
   return scene;
 }

@@ -2,8 +2,8 @@
 
 #include "scene/coverings.h"
 #include "scene/extent.h"
+#include "scene/model_face.h"
 #include "scene/pieces.h"
-#include "scene/problem_face.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
 #include "scene/turn.h"
@@ -185,7 +185,7 @@ Scene with_openings_cut(Scene scene) {
   all.back.assign(count, 1);
   const Coverings coverings = find_coverings(scene, all);
   const double near = weld_distance(scene);
-  std::vector<ProblemFace> cut;
+  std::vector<ModelFace> cut;
   std::vector<Polygon> polygons;
   for (PolygonIndex p = 0; p < count; ++p) {
     const std::vector<Loop> panes = panes_over(scene, coverings, p);
@@ -193,7 +193,7 @@ Scene with_openings_cut(Scene scene) {
       polygons.push_back(scene.polygons[p]);
       continue;
     }
-    cut.push_back(problem_face(scene, scene.polygons[p]));
+    cut.push_back(model_face(scene, scene.polygons[p]));
     Pieces pieces = opened(scene, scene.polygons[p], panes, near);
     scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
     for (Polygon& part : pieces.polygons) polygons.push_back(std::move(part));
@@ -201,7 +201,7 @@ Scene with_openings_cut(Scene scene) {
   scene.polygons = std::move(polygons);
   if (cut.empty()) return scene;
   const std::string what = listed(scene, cut) + " under a clear one in the same plane: opened there";
-  scene.problems.push_back({ProblemKind::overlapping_faces, cut.size(), what, std::move(cut)});
+  scene.diagnostics.push_back({DiagnosticCode::overlapping_faces, what, cut.size(), std::move(cut)});
   return scene;
 }
 

@@ -40,16 +40,16 @@ Pieces simple_pieces(const Polygon& polygon, const std::vector<Point>& points, d
   if (polygon.corners.size() == 3) return {{polygon}, {}, {}};
   const bool planar = is_planar(points);
   if (!planar && points.size() == 4)
-    return {in_triangles(polygon, points, folded(points), width), {}, ProblemKind::non_planar};
+    return {in_triangles(polygon, points, folded(points), width), {}, DiagnosticCode::non_planar};
   const auto triangles = proper_triangles(points);
-  if (!triangles) return {{}, {}, ProblemKind::self_intersecting};
+  if (!triangles) return {{}, {}, DiagnosticCode::self_intersecting};
   if (planar) return {{polygon}, {}, {}};
-  return {in_triangles(polygon, points, *triangles, width), {}, ProblemKind::non_planar};
+  return {in_triangles(polygon, points, *triangles, width), {}, DiagnosticCode::non_planar};
 }
 
 // A polygon that crosses itself, cut at the crossings.
 Pieces cut_pieces(const Scene& scene, const Polygon& polygon, const std::vector<Point>& points, double width) {
-  Pieces cut{{}, {}, ProblemKind::self_intersecting};
+  Pieces cut{{}, {}, DiagnosticCode::self_intersecting};
   for (const std::vector<Point>& loop : cut_at_crossings(points, width)) {
     std::vector<std::uint32_t> corners;
     for (const Point& point : loop) {
@@ -67,7 +67,7 @@ Pieces cut_pieces(const Scene& scene, const Polygon& polygon, const std::vector<
 Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width) {
   std::vector<Point> points;
   for (const std::uint32_t corner : polygon.corners) points.push_back(scene.vertices[corner]);
-  if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, ProblemKind::zero_area};
+  if (points.size() < 3 || is_narrow(points, width)) return {{}, {}, DiagnosticCode::zero_area};
   const bool is_bent_quadrilateral = points.size() == 4 && !is_planar(points);
   if (!is_bent_quadrilateral && crosses_itself(points)) return cut_pieces(scene, polygon, points, width);
   return simple_pieces(polygon, points, width);

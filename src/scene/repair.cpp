@@ -3,9 +3,9 @@
 #include "patchlight/scene/scene.h"
 
 #include "scene/extent.h"
+#include "scene/model_face.h"
 #include "scene/openings.h"
 #include "scene/pieces.h"
-#include "scene/problem_face.h"
 #include "scene/shells.h"
 #include "scene/solid_panes.h"
 #include "scene/weld.h"
@@ -82,14 +82,14 @@ Coincidence find_coincident(const Scene& scene) {
   return found;
 }
 
-using Faces = std::vector<ProblemFace>;
+using Faces = std::vector<ModelFace>;
 
 // The scene with one more problem, unless no face is concerned. `does` follows the number of faces: "have no area".
-Scene with_problem(Scene scene, ProblemKind kind, Faces faces, const std::string& does) {
+Scene with_problem(Scene scene, DiagnosticCode code, Faces faces, const std::string& does) {
   if (faces.empty()) return scene;
-  const std::string what = listed(scene, faces) + " " + does;
+  const std::string text = listed(scene, faces) + " " + does;
   const double area = area_of(faces);
-  scene.problems.push_back({kind, faces.size(), what, std::move(faces), area});
+  scene.diagnostics.push_back({code, text, faces.size(), std::move(faces), area});
   return scene;
 }
 
@@ -105,14 +105,14 @@ Scene report_far_faces(Scene scene) {
   const Box main = main_bounds(scene);
   double farthest = 0;
   for (const PolygonIndex p : far_polygons(scene)) {
-    far.push_back(problem_face(scene, scene.polygons[p]));
+    far.push_back(model_face(scene, scene.polygons[p]));
     for (const Point& corner : far.back().corners) farthest = std::max(farthest, main.exteriorDistance(corner));
   }
   std::ostringstream does;
   does.precision(3);
   does << "up to " << farthest << " m from the rest of the model (" << main.sizes().maxCoeff()
        << " m long). Tolerances follow the main part\nhint: delete the stray faces";
-  return with_problem(std::move(scene), ProblemKind::implausible_size, std::move(far), does.str());
+  return with_problem(std::move(scene), DiagnosticCode::implausible_size, std::move(far), does.str());
 }
 
 // Keeps one vertex of those at one place, and only those that polygons use.
@@ -150,7 +150,7 @@ Scene weld_vertices(Scene scene) {
   std::ostringstream what;
   what << (moved == 1 ? "1 vertex is" : std::to_string(moved) + " vertices are") << " within " << distance
        << " m of another one: each pair is taken as one vertex";
-  scene.problems.push_back({ProblemKind::welded_vertices, moved, what.str(), {}});
+  scene.diagnostics.push_back({DiagnosticCode::welded_vertices, what.str(), moved});
   return scene;
 }
 
@@ -194,10 +194,10 @@ Scene clean_corners(Scene scene) {
     std::vector<std::uint32_t> kept = without_spikes(polygon.corners, scene.vertices, width);
     if (kept.size() == polygon.corners.size()) continue;
     // Those of which fewer than three corners are left have no area and are left out as such.
-    if (kept.size() >= 3) repeated.push_back(problem_face(scene, polygon));
+    if (kept.size() >= 3) repeated.push_back(model_face(scene, polygon));
     polygon.corners = std::move(kept);
   }
-  return with_problem(std::move(scene), ProblemKind::repeated_corners, std::move(repeated),
+  return with_problem(std::move(scene), DiagnosticCode::repeated_corners, std::move(repeated),
                       "with corners that repeat the one before, or are the tips of spikes without width; left out");
 }
 
@@ -222,7 +222,7 @@ Scene report_lost_objects(Scene scene, const std::set<std::string>& before) {
   std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::inserter(lost, lost.end()));
   if (lost.empty()) return scene;
   const std::string what = counted(lost.size(), "object") + " without any sound face, left out" + of_objects(lost);
-  scene.problems.push_back({ProblemKind::left_out, lost.size(), what, {}});
+  scene.diagnostics.push_back({DiagnosticCode::left_out, what, lost.size()});
   return scene;
 }
 
@@ -236,27 +236,27 @@ Scene make_simple(Scene scene) {
   polygons.reserve(scene.polygons.size());
   for (const Polygon& polygon : scene.polygons) {
     Pieces pieces = pieces_of(scene, polygon, width);
-    if (pieces.kind == ProblemKind::zero_area) {
-      narrow.push_back(problem_face(scene, polygon));
+    if (pieces.defect == DiagnosticCode::zero_area) {
+      narrow.push_back(model_face(scene, polygon));
       narrow_objects.insert(group_name(scene, polygon.group));
     }
-    if (pieces.kind == ProblemKind::non_planar) bent.push_back(problem_face(scene, polygon));
-    if (pieces.kind == ProblemKind::self_intersecting) {
-      (pieces.polygons.empty() ? lost : crossing).push_back(problem_face(scene, polygon));
+    if (pieces.defect == DiagnosticCode::non_planar) bent.push_back(model_face(scene, polygon));
+    if (pieces.defect == DiagnosticCode::self_intersecting) {
+      (pieces.polygons.empty() ? lost : crossing).push_back(model_face(scene, polygon));
       if (pieces.polygons.empty()) lost_objects.insert(group_name(scene, polygon.group));
     }
     scene.vertices.insert(scene.vertices.end(), pieces.new_vertices.begin(), pieces.new_vertices.end());
     for (Polygon& piece : pieces.polygons) polygons.push_back(std::move(piece));
   }
   scene.polygons = std::move(polygons);
-  scene = with_problem(std::move(scene), ProblemKind::zero_area, std::move(narrow),
+  scene = with_problem(std::move(scene), DiagnosticCode::zero_area, std::move(narrow),
                        "without area; left out" + of_objects(narrow_objects));
-  scene = with_problem(std::move(scene), ProblemKind::non_planar, std::move(bent),
+  scene = with_problem(std::move(scene), DiagnosticCode::non_planar, std::move(bent),
                        "with corners that do not lie in one plane; cut into triangles");
-  scene = with_problem(std::move(scene), ProblemKind::self_intersecting, std::move(crossing),
+  scene = with_problem(std::move(scene), DiagnosticCode::self_intersecting, std::move(crossing),
                        "with an outline that crosses itself; cut at the crossings, all parts facing one way");
   scene =
-      with_problem(std::move(scene), ProblemKind::little_left_out, std::move(lost),
+      with_problem(std::move(scene), DiagnosticCode::little_left_out, std::move(lost),
                    "with an outline that crosses itself, without a clear area; left out" + of_objects(lost_objects));
   return report_lost_objects(std::move(scene), objects);
 }
@@ -266,10 +266,10 @@ Scene weigh_losses(Scene scene) {
   constexpr double most = 0.01;
   double area = 0, lost = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += area_vector(corner_points(scene, p)).norm();
-  for (const Problem& problem : scene.problems) lost += is_loss(problem.kind) ? problem.area : 0;
+  for (const Diagnostic& problem : scene.diagnostics) lost += is_loss(problem.code) ? problem.area : 0;
   if (lost <= most * (area + lost)) return scene;
-  for (Problem& problem : scene.problems) {
-    if (problem.kind == ProblemKind::little_left_out && problem.area > 0) problem.kind = ProblemKind::left_out;
+  for (Diagnostic& problem : scene.diagnostics) {
+    if (problem.code == DiagnosticCode::little_left_out && problem.area > 0) problem.code = DiagnosticCode::left_out;
   }
   return scene;
 }
@@ -292,34 +292,34 @@ Scene merge_coincident(Scene scene) {
     const Polygon& second = scene.polygons[pair.second];
     const bool second_is_clear = is_opening(scene, pair.second);
     if (second_is_clear != is_opening(scene, pair.first)) {
-      opened.push_back(problem_face(scene, second_is_clear ? first : second));
+      opened.push_back(model_face(scene, second_is_clear ? first : second));
       if (second_is_clear) first = second;
       continue;
     }
     if (!pair.same_front && !first.back_material) {
-      two_sided.push_back(problem_face(scene, second));
+      two_sided.push_back(model_face(scene, second));
       first.back_material = second.material;
       first.back_texture_map = second.texture_map;
       continue;
     }
     const Side side = pair.same_front ? Side::front : Side::back;
-    duplicates.push_back(problem_face(scene, second));
+    duplicates.push_back(model_face(scene, second));
     other_material += material_on(first, side) != second.material;
     if (emits(scene, pair.second, Side::front) && !emits(scene, pair.first, side)) {
-      covered.push_back(problem_face(scene, second));
+      covered.push_back(model_face(scene, second));
     }
   }
   scene.polygons = without_marked(std::move(scene.polygons), found.is_second);
   const std::string others =
       other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
-  scene = with_problem(std::move(scene), ProblemKind::overlapping_faces, std::move(opened),
+  scene = with_problem(std::move(scene), DiagnosticCode::overlapping_faces, std::move(opened),
                        "at the place of a clear one: opened there");
-  scene = with_problem(std::move(scene), ProblemKind::covered_lamp, std::move(covered),
+  scene = with_problem(std::move(scene), DiagnosticCode::covered_lamp, std::move(covered),
                        "of lamps at the place of an earlier face that does not emit; the earlier face stays, so remove "
                        "it or move the lamp");
-  scene = with_problem(std::move(scene), ProblemKind::duplicate_faces, std::move(duplicates),
+  scene = with_problem(std::move(scene), DiagnosticCode::duplicate_faces, std::move(duplicates),
                        "at the place of an earlier one with the same front" + others + "; the first stays");
-  return with_problem(std::move(scene), ProblemKind::two_sided_faces, std::move(two_sided),
+  return with_problem(std::move(scene), DiagnosticCode::two_sided_faces, std::move(two_sided),
                       "back to back with an earlier one; the two become one polygon with a material on each side");
 }
 
@@ -329,13 +329,13 @@ Scene report_shells(Scene scene) {
   std::size_t lamps = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (!shells.turned[p] || scene.polygons[p].back_material) continue;
-    turned.push_back(problem_face(scene, scene.polygons[p]));
+    turned.push_back(model_face(scene, scene.polygons[p]));
     lamps += is_lamp(scene, p);
   }
-  for (const PolygonIndex p : shells.branched) branched.push_back(problem_face(scene, scene.polygons[p]));
+  for (const PolygonIndex p : shells.branched) branched.push_back(model_face(scene, scene.polygons[p]));
   const std::string shine = lamps > 0 ? ", " + counted(lamps, "lamp") + " among them" : "";
   scene =
-      with_problem(std::move(scene), ProblemKind::turned_faces, std::move(turned),
+      with_problem(std::move(scene), DiagnosticCode::turned_faces, std::move(turned),
                    "turned against the faces next to them" + shine +
                        "; they stay: mesh.sides=auto finds the right sides of closed shells, a lamp shines from its "
                        "front, mesh.sides=front shows the wrong side");
@@ -343,7 +343,7 @@ Scene report_shells(Scene scene) {
   const std::string what = counted(shells.branched_edges, "edge") + " of three faces or more, " +
                            listed(scene, branched) +
                            " at them; mesh.sides=auto keeps both sides of shells joined there";
-  scene.problems.push_back({ProblemKind::non_manifold_edges, shells.branched_edges, what, std::move(branched)});
+  scene.diagnostics.push_back({DiagnosticCode::non_manifold_edges, what, shells.branched_edges, std::move(branched)});
   return scene;
 }
 
@@ -360,7 +360,7 @@ Scene repair(Scene scene) {
   scene = with_openings_cut(std::move(scene));
   scene = with_solid_panes_as_one(std::move(scene));
   scene = report_shells(std::move(scene));
-  scene.problems = worst_first(std::move(scene.problems));
+  scene.diagnostics = worst_first(std::move(scene.diagnostics));
   return scene;
 }
 

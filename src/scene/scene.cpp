@@ -171,21 +171,8 @@ Eigen::Index number_of_bands(const Scene& scene) { return scene.materials.front(
 
 Bands bands_of(const Scene& scene) { return scene.bands.empty() ? usual_bands(number_of_bands(scene)) : scene.bands; }
 
-std::vector<std::string> warnings_of(const Scene& scene) {
-  std::vector<std::string> sentences;
-  for (const Problem& problem : scene.problems) {
-    if (makes_results_wrong(problem.kind)) sentences.push_back(problem.what);
-  }
-  return sentences;
-}
-
-std::vector<std::string> remarks_of(const Scene& scene) {
-  std::vector<std::string> sentences;
-  for (const Problem& problem : scene.problems) {
-    if (!makes_results_wrong(problem.kind)) sentences.push_back(problem.what);
-  }
-  sentences.insert(sentences.end(), scene.notes.begin(), scene.notes.end());
-  return sentences;
+Diagnostics remarks_of(const Scene& scene) {
+  return chosen(scene.diagnostics, [](DiagnosticCode code) { return !makes_results_wrong(code); });
 }
 
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon) {

@@ -8,6 +8,7 @@
 #include "scene/face_tree.h"
 #include "scene/half_spaces.h"
 #include "scene/lamp_places.h"
+#include "scene/model_face.h"
 #include "scene/shells.h"
 #include "scene/simple_polygon.h"
 #include "scene/solids.h"
@@ -214,23 +215,26 @@ struct Count {
   std::uint32_t first_outward_line = 0;
 };
 
-std::vector<std::string> notes_on(const Count& count) {
-  const auto solids = [](int number) {
-    return std::to_string(number) + (number == 1 ? " closed solid" : " closed solids");
-  };
-  std::vector<std::string> notes;
-  if (count.dark > 0) notes.push_back("the inner sides of " + solids(count.dark) + " without a lamp are left out");
+Diagnostics notes_on(const Count& count) {
+  const auto solids = [](int number) { return counted(static_cast<std::size_t>(number), "closed solid"); };
+  Diagnostics notes;
+  if (count.dark > 0)
+    notes.push_back(
+        {DiagnosticCode::unlit_sides, "the inner sides of " + solids(count.dark) + " without a lamp are left out"});
   if (count.outside > 0) {
-    notes.push_back("the outer sides of " + solids(count.outside) + " around all lamps are left out");
+    notes.push_back({DiagnosticCode::unlit_sides,
+                     "the outer sides of " + solids(count.outside) + " around all lamps are left out"});
   }
   if (count.sealed > 0) {
-    notes.push_back("no daylight gets into " + solids(count.sealed) + " around lamps, as no face of " +
-                    (count.sealed == 1 ? "it" : "them") + " lets light through");
+    notes.push_back({DiagnosticCode::sealed_solid, "no daylight gets into " + solids(count.sealed) +
+                                                       " around lamps, as no face of " +
+                                                       (count.sealed == 1 ? "it" : "them") + " lets light through"});
   }
   if (count.outward > 0) {
     const std::string line =
         count.first_outward_line > 0 ? " (line " + std::to_string(count.first_outward_line) + ")" : std::string();
-    notes.push_back(solids(count.outward) + line + " with outward normals around a lamp: the inner sides are used");
+    notes.push_back({DiagnosticCode::outward_normals,
+                     solids(count.outward) + line + " with outward normals around a lamp: the inner sides are used"});
   }
   return notes;
 }
@@ -428,7 +432,8 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   if (in_the_dark.unreached) lit.count.dark = 0;
   if (in_the_dark.turned_away) lit.count.outside = 0;
   kept.notes = notes_on(lit.count);
-  if (!lit.outside.empty() && !in_the_dark.unreached) kept.notes.push_back(lit.outside);
+  if (!lit.outside.empty() && !in_the_dark.unreached)
+    kept.notes.push_back({DiagnosticCode::misplaced_luminaire, lit.outside});
   // Where nothing is lit, what stands in a dark solid is no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
   const SideMask unreached = any_light ? sides_within(scene, shells, lit.dark) : inner_sides(scene, shells, lit.dark);
@@ -468,7 +473,9 @@ KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_th
     kept.back.push_back(sides == Sides::both || has_back ? 1 : 0);
   }
   kept.emit_from_back = sides == Sides::both;
-  if (kept.emit_from_back) kept.notes.push_back("lamps emit from both sides: twice the flux of their front sides");
+  if (kept.emit_from_back)
+    kept.notes.push_back(
+        {DiagnosticCode::both_sides, "lamps emit from both sides: twice the flux of their front sides"});
   return kept;
 }
 

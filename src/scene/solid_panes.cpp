@@ -2,7 +2,7 @@
 
 #include "base/rounded.h"
 #include "scene/face_tree.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,9 +138,10 @@ Scene with_solid_panes_as_one(Scene scene) {
     thickest = std::max(thickest, pane.thickness);
   }
   if (panes > 0)
-    scene.notes.push_back(counted(panes, "pane") + " of two parallel faces, up to " +
-                          rounded(1e-6 * static_cast<double>(thickest)) + " mm apart, " +
-                          (panes == 1 ? "counts" : "count each") + " as one thin pane");
+    scene.diagnostics.push_back(
+        {DiagnosticCode::read_as_pane, counted(panes, "pane") + " of two parallel faces, up to " +
+                                           rounded(1e-6 * static_cast<double>(thickest)) + " mm apart, " +
+                                           (panes == 1 ? "counts" : "count each") + " as one thin pane"});
   return scene;
 }
 

@@ -60,9 +60,11 @@ Scene with_kept_sums(Scene scene) {
     constexpr double rounding = 1e-9;
     Eigen::Index band = 0;
     if (stated.size() == 0 || (stated - material.reflectance).maxCoeff(&band) <= rounding) continue;
-    scene.notes.push_back("material '" + material.name + "': what it reflects and lets through is more than 1, as in " +
-                          scene.bands[static_cast<std::size_t>(band)].name + "; there it scatters " +
-                          rounded(material.reflectance[band], 2) + " instead of " + rounded(stated[band], 2));
+    scene.diagnostics.push_back(
+        {DiagnosticCode::lowered_reflectance,
+         "material '" + material.name + "': what it reflects and lets through is more than 1, as in " +
+             scene.bands[static_cast<std::size_t>(band)].name + "; there it scatters " +
+             rounded(material.reflectance[band], 2) + " instead of " + rounded(stated[band], 2)});
   }
   return scene;
 }

@@ -59,8 +59,8 @@ struct StudyReference {
 
 /// What accuracy costs.
 struct Study {
-  Plan plan;                       ///< of the finest setting of the sweeps
-  std::vector<std::string> notes;  ///< of its run
+  Plan plan;          ///< of the finest setting of the sweeps
+  Diagnostics notes;  ///< of its run
   StudyReference reference;
   std::vector<StudySweep> sweeps;
   ErrorParts parts;

@@ -18,7 +18,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -154,11 +153,9 @@ SensorView read_sensors(const Simulation& simulation, const std::vector<SensorGr
   const Scene& scene = simulation.world->scene();
   const std::vector<SensorPlace> places =
       place_sensors(scene, sensors, simulation.plan.sides, simulation.world->all_faces());
-  std::vector<std::string> warnings = doubtful_sensors(sensors, places);
-  for (std::string& warning : sensors_far_off(scene, sensors)) warnings.push_back(std::move(warning));
-  for (std::string& warning : sensors_close_to_pictures(scene, sensors, simulation.mesh))
-    warnings.push_back(std::move(warning));
-  return {readings_at(places, simulation, observer), std::move(warnings)};
+  return {readings_at(places, simulation, observer),
+          merged({doubtful_sensors(sensors, places), sensors_far_off(scene, sensors),
+                  sensors_close_to_pictures(scene, sensors, simulation.mesh)})};
 }
 
 }  // namespace patchlight

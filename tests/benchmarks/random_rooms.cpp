@@ -337,7 +337,7 @@ class TotalErrorMeter {
       square += weight * (off - noise) / count;
       variance += std::pow(weight * (variance_[i] + noise), 2) * 2 / count;
       variance += std::pow(weight * variance_[i] - stated_, 2) / count;
-      z += off / (variance_[i] + noise) / count;
+      if (off > 0) z += off / (variance_[i] + noise) / count;  // black patches have neither light nor error
     }
     return {simulation_.accuracy.back().total, square / light_, std::sqrt(variance / count) / light_, std::sqrt(z)};
   }

@@ -160,7 +160,7 @@ class BuildingTest(ToolTest):
         self.assertNotIn("sensors are asked for", self.good("check", "hall.toml"))
         # Long before its end: without mesh and patches it is refused afterwards.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
-        self.assertRegex(done.stderr, r"note: \d{6} sensors are asked for")
+        self.assertRegex(done.stderr, r"note: implausible_size: \d{6} sensors are asked for")
 
     def test_check_fits_on_a_screen(self):
         names = [f"m{k}" for k in range(80)]

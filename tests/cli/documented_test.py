@@ -16,6 +16,9 @@ OUTPUTS = REFERENCE / "outputs"
 # Words in tables that are values or file names.
 NO_KEYS = {"null", "lx", "W/m^2", "disagrees", "inconclusive", "agrees", "all", "tiles", "rays", "on-demand"}
 
+# Keys of diagnostics, of which there may be none.
+OF_DIAGNOSTICS = {"code", "severity", "text"}
+
 
 def section(page, heading=None):
     """The text of a page, or of one section with those below it."""
@@ -99,7 +102,7 @@ class DocumentedTest(ToolTest):
         names = self.solved()
         found = set().union(*(set(keys(self.json(f"{name}.json"))) for name in names))
         text = section(OUTPUTS / "report-json.md", "## solve and relight")
-        self.assert_same(found, parts(documented(text)), {"relative_error_by_space", "outside", "error_solver"})
+        self.assert_same(found, parts(documented(text)), {"relative_error_by_space", "outside", "error_solver", *OF_DIAGNOSTICS})
 
         page = OUTPUTS / "vtp.md"
         every = [arrays(self.folder / f"{name}.vtp") for name in names]
@@ -127,7 +130,7 @@ class DocumentedTest(ToolTest):
     def test_other_reports(self):
         page = OUTPUTS / "report-json.md"
         self.tool("plan", "meshes/cornell_box.obj", "--json", "plan.json")
-        self.assert_same(set(keys(self.json("plan.json"))), documented(section(page, "## plan"), {0, 1}) - {"decisions[]"} | {"decisions"})
+        self.assert_same(set(keys(self.json("plan.json"))), parts(documented(section(page, "## plan"), {0, 1})), OF_DIAGNOSTICS)
         self.tool("crosscheck", "meshes/cornell_box.obj", "--patches", 150, "--sample-patches", 10, "--paths", 64, "--json", "paths.json",
                   codes_of_success=(0, 5))
         found = set(keys(self.json("paths.json")))
@@ -136,7 +139,7 @@ class DocumentedTest(ToolTest):
         self.tool("check", "meshes/cornell_box.obj", "--sides", "auto", "--sky", "clear:9000lx", "--sun", "40,180:80000lx", "--json", "check.json", "--problems",
                   "problems.vtp")
         page = REFERENCE / "check-problems.md"
-        self.assert_same(set(keys(self.json("check.json"))), parts(documented(section(page, "## JSON"))), {"file", "line"})
+        self.assert_same(set(keys(self.json("check.json"))), parts(documented(section(page, "## JSON"))), {"file", "line", *OF_DIAGNOSTICS})
         found = arrays(self.folder / "problems.vtp")
         self.assert_same(found["CellData"] | found["FieldData"], documented(section(page, "## ParaView"), {0}))
 
@@ -197,12 +200,16 @@ class DocumentedTest(ToolTest):
         words = {name for row in cells(page) if row for name in codes(row[0]) + (codes(row[1]) if "[" in row[0] or not row[0] else [])}
         self.assertEqual({name for name in words if re.fullmatch(r"[a-z_]+", name)} - allowed, set())
 
-    def test_problems_of_models(self):
-        text = (ROOT / "src" / "scene" / "problem.cpp").read_text(encoding="utf-8")
-        kinds = set(re.findall(r"case ProblemKind::(\w+):", text))
-        page = REFERENCE / "check-problems.md"
-        named = {name for heading in ("## Errors", "## Warnings", "## Remarks") for name in documented(section(page, heading), {0})}
-        self.assertEqual(named, kinds)
+    def test_diagnostics(self):
+        header = (ROOT / "include/patchlight/base/diagnostics.h").read_text(encoding="utf-8")
+        enum = re.search(r"enum class DiagnosticCode.*?\{(.*?)\n\};", header, re.DOTALL)[1]
+        codes_there = re.findall(r"^  (\w+),? *///<", enum, re.MULTILINE)
+        source = (ROOT / "src/base/diagnostics.cpp").read_text(encoding="utf-8")
+        names = re.search(r"code_names =\n(.*?);", source, re.DOTALL)[1]
+        self.assertEqual(names.replace('"', "").split(), codes_there)
+        page = REFERENCE / "diagnostics.md"
+        named = {name for heading in ("## Errors", "## Warnings", "## Remarks", "## Notes") for name in documented(section(page, heading), {0})}
+        self.assertEqual(named, set(codes_there))
 
 
 if __name__ == "__main__":

@@ -71,10 +71,10 @@ class PlanTest(ToolTest):
         needed = json.loads((self.folder / "plan.json").read_text())["expected"]["memory_bytes"]
         done = self.run_tool(*options, "--memory", f"{math.ceil(needed / 1e6) + 1}MB")
         self.assertEqual(done.returncode, GOOD, done.stderr)
-        self.assertIn(f"note: {said}", done.stderr)
+        self.assertIn(f"note: second_mesh: {said}", done.stderr)
         self.assertIn("(--memory)", done.stderr)
         self.assertNotIn("a second mesh", done.stdout)
-        self.assertIn(said, json.loads((self.folder / "plan.json").read_text())["notes"][-1])
+        self.assertIn(said, json.loads((self.folder / "plan.json").read_text())["notes"][-1]["text"])
 
     def test_facts_decide(self):
         plan = self.plan("--patches", "1000")

@@ -106,7 +106,7 @@ TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   EXPECT_LE(simulation.accuracy.back().total, 0.02);
   EXPECT_LE(error_against(finer_reference(scene, false), simulation).relative, 0.02);
   ASSERT_FALSE(simulation.notes.empty());
-  EXPECT_NE(simulation.notes.back().find("assembly.storage=rays"), std::string::npos) << simulation.notes.back();
+  EXPECT_EQ(simulation.notes.back().code, DiagnosticCode::rows_of_rays);
   request.assembly.storage = Storage::tiles;
   EXPECT_THROW(simulate(scene, request), MemoryError);
 }

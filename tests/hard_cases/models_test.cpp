@@ -80,14 +80,14 @@ TEST(FacesWithoutArea, ChangeNothing) {
   scene = with_polygon(std::move(scene), {Point(0, 0, 0), Point(4, 3, 0), Point(4, 3, 0), Point(2, 1.5, 0)});
   scene = with_polygon(std::move(scene), {Point(2, 2, 2), Point(2 + 1e-9, 2, 2), Point(2, 2 + 1e-9, 2)}, 1);
   scene = repair(std::move(scene));
-  const auto count = [&](ProblemKind kind) {
-    for (const Problem& problem : scene.problems) {
-      if (problem.kind == kind) return problem.count;
+  const auto count = [&](DiagnosticCode kind) {
+    for (const Diagnostic& problem : scene.diagnostics) {
+      if (problem.code == kind) return problem.count;
     }
     return std::size_t{0};
   };
-  EXPECT_EQ(count(ProblemKind::zero_area), 5U);
-  EXPECT_EQ(count(ProblemKind::repeated_corners), sound.polygons.size());
+  EXPECT_EQ(count(DiagnosticCode::zero_area), 5U);
+  EXPECT_EQ(count(DiagnosticCode::repeated_corners), sound.polygons.size());
   const Field expected = simulate(repair(sound), coarse()).solution.radiosity;
   const Field radiosity = simulate(scene, coarse()).solution.radiosity;
   ASSERT_EQ(radiosity.rows(), expected.rows());
@@ -103,8 +103,8 @@ TEST(TurnedFaces, OfClosedShellsChangeNothing) {
     Scene scene = sound;
     std::reverse(scene.polygons[turned].corners.begin() + 1, scene.polygons[turned].corners.end());
     scene = repair(std::move(scene));
-    ASSERT_EQ(scene.problems.size(), 1U) << turned;
-    EXPECT_EQ(scene.problems[0].kind, ProblemKind::turned_faces);
+    ASSERT_EQ(scene.diagnostics.size(), 1U) << turned;
+    EXPECT_EQ(scene.diagnostics[0].code, DiagnosticCode::turned_faces);
     const Simulation simulation = simulate(scene, coarse());
     ASSERT_EQ(simulation.mesh.size(), expected.mesh.size()) << turned;
     EXPECT_NEAR(simulation.balance.absorbed[0], expected.balance.absorbed[0], 1e-6 * expected.balance.absorbed[0]);
@@ -133,9 +133,9 @@ TEST(TurnedFaces, OfOpenShellsTakePartWithBothSides) {
     band = with_polygon(std::move(band), {at(k, -.3), at(k + 1, .3), at(k, .3)});
   }
   for (const Scene& scene : {repair(fins), repair(band)}) {
-    ASSERT_FALSE(scene.problems.empty());
+    ASSERT_FALSE(scene.diagnostics.empty());
     const bool is_band = scene.polygons.size() > 4;
-    EXPECT_EQ(scene.problems[0].kind, is_band ? ProblemKind::turned_faces : ProblemKind::non_manifold_edges);
+    EXPECT_EQ(scene.diagnostics[0].code, is_band ? DiagnosticCode::turned_faces : DiagnosticCode::non_manifold_edges);
     for (const Sides sides : {Sides::automatic, Sides::both}) {
       Request request = coarse();
       request.mesh.sides = sides;

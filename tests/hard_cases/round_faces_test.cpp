@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "mesh/mesher.h"
 #include "scene/repair.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 
@@ -108,9 +109,7 @@ TEST(RoundFace, OfManyCornersTakesAboutThePatchesAskedFor) {
     request.mesh.sides = Sides::front;
     const Plan plan = make_plan(scene, request);
     EXPECT_LE(tessellate(scene, plan.sides, plan.max_edge).size(), 82U) << corners;
-    EXPECT_TRUE(std::any_of(plan.notes.begin(), plan.notes.end(), [&](const std::string& note) {
-      return note.find("1 face (test) with an outline of up to " + std::to_string(corners) + " corners") == 0;
-    })) << corners;
+    EXPECT_TRUE(has(plan.notes, DiagnosticCode::fine_outline)) << corners;
   }
 }
 
@@ -170,9 +169,7 @@ TEST(RoundFace, IsTheLidOfAFurnace) {
     ASSERT_LE(simulation.mesh.size(), 2U * 186 + 120);
     ASSERT_TRUE(simulation.solution.converged);
     EXPECT_LT((simulation.solution.radiosity - 1).abs().maxCoeff(), 1e-8) << metres;
-    EXPECT_TRUE(std::any_of(simulation.plan.notes.begin(), simulation.plan.notes.end(), [](const std::string& note) {
-      return note.find("outline of up to 120 corners") != std::string::npos;
-    }));
+    EXPECT_TRUE(has(simulation.plan.notes, DiagnosticCode::fine_outline));
   }
 }
 

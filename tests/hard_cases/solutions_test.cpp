@@ -66,10 +66,10 @@ TEST(NearlyPerfectReflection, BalancesEnergyToABillionth) {
 // without a bound; what it hands out is the light of the lamps alone.
 TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
   const Scene scene = uniform_room(1, 1);
-  const std::vector<Problem> problems = survey(scene).problems;
-  EXPECT_TRUE(std::any_of(problems.begin(), problems.end(), [](const Problem& problem) {
-    return problem.kind == ProblemKind::full_reflectance &&
-           problem.what.find("a closed room of reflectance 1 has no answer") != std::string::npos;
+  const Diagnostics problems = survey(scene).diagnostics;
+  EXPECT_TRUE(std::any_of(problems.begin(), problems.end(), [](const Diagnostic& problem) {
+    return problem.code == DiagnosticCode::full_reflectance &&
+           problem.text.find("a closed room of reflectance 1 has no answer") != std::string::npos;
   }));
   for (const Solver solver : all_solvers()) {
     Request request = coarse(1e-6, 30);
@@ -89,9 +89,9 @@ TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
 TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   const ReadOptions white{.settings = {parse_material_setting("white.reflectance=1")}};
   const Scene scene = repair(read_scene(mesh_folder() / "cornell_box.obj", white));
-  const std::vector<Problem> problems = survey(scene).problems;
+  const Diagnostics problems = survey(scene).diagnostics;
   EXPECT_TRUE(std::any_of(problems.begin(), problems.end(),
-                          [](const Problem& problem) { return problem.kind == ProblemKind::full_reflectance; }));
+                          [](const Diagnostic& problem) { return problem.code == DiagnosticCode::full_reflectance; }));
   Request request;
   request.mesh.patches = 500;
   request.solver.relative_error = 1e-8;

@@ -148,9 +148,9 @@ TEST(Slivers, AreKeptOrLeftOutByTheirWidthAlone) {
     for (const Scene& room : rooms_with_sliver(width)) {
       for (const Eigen::Affine3d& motion : turns(20)) {
         const Scene repaired = repair(moved(room, motion));
-        for (const Problem& problem : repaired.problems) {
-          EXPECT_TRUE(problem.kind == ProblemKind::zero_area || problem.kind == ProblemKind::welded_vertices)
-              << name_of(problem.kind);
+        for (const Diagnostic& problem : repaired.diagnostics) {
+          EXPECT_TRUE(problem.code == DiagnosticCode::zero_area || problem.code == DiagnosticCode::welded_vertices)
+              << name_of(problem.code);
         }
         const std::size_t lost = width < 1e-6 ? 1 : 0;
         EXPECT_EQ(repaired.polygons.size(), room.polygons.size() - lost) << width;

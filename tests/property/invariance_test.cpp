@@ -110,7 +110,7 @@ TEST(Invariance, MotionAndScaleChangeNothing) {
 TEST(Invariance, TheOrderOfFacesChangesNothingInAConvexRoom) {
   const Scene scene = with_lines(room_with_ceiling_lamp());
   const Solved here = solved(scene, 1);
-  EXPECT_TRUE(here.scene.problems.empty());
+  EXPECT_TRUE(here.scene.diagnostics.empty());
   for (const unsigned seed : {1U, 2U, 3U}) expect_same(here, solved(shuffled(scene, seed), 1), 1e-6);
 }
 
@@ -140,7 +140,7 @@ TEST(Invariance, RedundantFacesChangeNothing) {
     shell.polygons.push_back(polygon);
   }
   const Solved with_backs = solved(shell, 1);
-  EXPECT_EQ(with_backs.scene.problems.at(0).kind, ProblemKind::two_sided_faces);
+  EXPECT_EQ(with_backs.scene.diagnostics.at(0).code, DiagnosticCode::two_sided_faces);
   expect_same(here, with_backs, 1e-9);
 }
 

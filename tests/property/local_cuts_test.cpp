@@ -156,7 +156,8 @@ TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   const Simulation s = simulate(room_with_board(), request);
   EXPECT_EQ(s.accuracy.size(), 1U);
   ASSERT_FALSE(s.notes.empty());
-  const std::string& note = s.notes.back();
+  EXPECT_EQ(s.notes.back().code, DiagnosticCode::second_mesh);
+  const std::string& note = s.notes.back().text;
   EXPECT_NE(note.find("patches, would err less and is not made, as it takes "), std::string::npos) << note;
   EXPECT_NE(note.find("(resources.memory)"), std::string::npos) << note;
 }

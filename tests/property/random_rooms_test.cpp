@@ -1,8 +1,8 @@
 // The rooms of benchmark_random_rooms: the same bits for the same seed, watertight, and readable as scene files.
 #include "support/random_rooms.h"
 
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/scene/problem.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
@@ -102,8 +102,8 @@ TEST(RandomRooms, FilesAreReadWithoutErrorsAndLightReachesAllSensors) {
   const TemporaryFolder folder;
   for (const std::string& kind : all_kinds()) {
     const Scene scene = read_scene(write_random_room(make_random_room(kind, 2, 1), folder.path()));
-    for (const Problem& problem : scene.problems)
-      EXPECT_NE(severity_of(problem.kind), Severity::error) << kind << ": " << problem.what;
+    for (const Diagnostic& problem : scene.diagnostics)
+      EXPECT_NE(severity_of(problem.code), Severity::error) << kind << ": " << problem.text;
     const std::vector<Sensor> sensors = all_sensors(scene.sensors);
     EXPECT_EQ(sensors.size(), 15U) << kind;
     const PathEstimate paths = trace_irradiance(scene, kept_sides(scene, Sides::both), sensors, {.paths = 512});

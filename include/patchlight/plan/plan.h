@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,7 +87,7 @@ struct Plan {
   std::vector<Decision> decisions;
   Spectrum lamp_colour = {};  ///< of all lights, relative to their brightest band, where one band stands for all; else
                               ///< empty
-  std::vector<std::string> notes;  ///< what was asked and cannot be
+  Diagnostics notes;          ///< what was asked and cannot be
 };
 
 /// What of a run is given, so that it is not found anew.

@@ -21,11 +21,11 @@ struct SceneFacts {
   std::size_t materials = 0;
   double metres_per_unit = 1;
   Vector up = Vector::UnitZ();
-  bool up_stated = true;              ///< else it was guessed: upright_axis()
-  Vector size = Vector::Zero();       ///< of the bounds, m
-  std::vector<std::string> warnings;  ///< problems that can make all results wrong
-  std::vector<std::string> notes;     ///< other problems and remarks
-  Bands bands = {};                   ///< what spectra are of
+  bool up_stated = true;         ///< else it was guessed: upright_axis()
+  Vector size = Vector::Zero();  ///< of the bounds, m
+  Diagnostics warnings;          ///< problems that can make all results wrong
+  Diagnostics notes;             ///< other problems and remarks
+  Bands bands = {};              ///< what spectra are of
 };
 
 /// What the patches of one material add up to; spectra have a value per band.
@@ -45,9 +45,9 @@ struct MaterialLight {
 /// What the sensors read.
 struct SensorFacts {
   std::vector<GroupReadings> groups;
-  std::string unit;                   ///< of their values
-  bool daylight = false;              ///< they have daylight factors
-  std::vector<std::string> warnings;  ///< a sentence for each sensor whose place is in doubt
+  std::string unit;       ///< of their values
+  bool daylight = false;  ///< they have daylight factors
+  Diagnostics warnings;   ///< a sentence for each sensor whose place is in doubt
 };
 
 /// What bounds a room, by the way it faces.
@@ -147,7 +147,7 @@ struct Report {
   SceneFacts scene;
   Request request;
   Plan plan;
-  std::vector<std::string> notes;  ///< Simulation::notes
+  Diagnostics notes;  ///< Simulation::notes
   PatchIndex patches = 0;
   std::size_t vertices = 0;
   double area = 0;  ///< of all patches, m^2
@@ -164,8 +164,7 @@ struct Report {
 };
 
 /// What the sensors of groups read, told of a scene.
-SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings,
-                         std::vector<std::string> warnings);
+SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings, Diagnostics warnings);
 
 /// Works out the report of a run; costs are those noted so far. O(patches log patches).
 Report report_of(const Scene& scene, const Request& request, const Simulation& simulation, SensorFacts sensors = {});

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
 #include "patchlight/scene/daylight.h"
 #include "patchlight/scene/luminaire.h"
-#include "patchlight/scene/problem.h"
 #include "patchlight/scene/sensor.h"
 
 #include <cstddef>
@@ -126,9 +126,8 @@ struct Scene {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;
   std::optional<Sky> sky;
-  std::vector<std::string> notes;                 ///< remarks that are no problems, e.g. what is not simulated
   std::vector<UnsimulatedMaterials> unsimulated;  ///< counted per file that the scene comes from
-  std::vector<Problem> problems;                  ///< what is wrong with the model, worst first
+  Diagnostics diagnostics;                        ///< findings on the model, worst first, and then those of later steps
   std::vector<LampHint> lamp_hints;               ///< materials that do not emit, but may be meant to
   bool photometric = false;                       ///< lights are stated in lumens or lux: illuminance has a meaning
   std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
@@ -143,11 +142,8 @@ Eigen::Index number_of_bands(const Scene& scene);
 /// What they stand for: as the scene says, else usual_bands().
 Bands bands_of(const Scene& scene);
 
-/// The sentences of the problems that can make all results wrong.
-std::vector<std::string> warnings_of(const Scene& scene);
-
-/// The sentences of all other problems, then the notes.
-std::vector<std::string> remarks_of(const Scene& scene);
+/// The diagnostics that cannot make all results wrong.
+Diagnostics remarks_of(const Scene& scene);
 
 /// The corner points of a polygon.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);

@@ -14,7 +14,7 @@ namespace patchlight {
 /// What the sensors of a solved scene read.
 struct SensorView {
   Readings readings;
-  std::vector<std::string> warnings;  ///< a sentence for each sensor whose place is in doubt
+  Diagnostics warnings;  ///< a sentence for each sensor whose place is in doubt
 };
 
 /// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from

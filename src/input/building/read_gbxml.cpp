@@ -143,13 +143,15 @@ class GbxmlReader {
       for (const pugi::xml_node& surface : campus.children("Surface")) add_surface(surface);
       for (const pugi::xml_node& building : campus.children("Building")) add_rooms(building);
     }
-    scene_.notes.push_back(usual_reflectances());
+    scene_.diagnostics.push_back({DiagnosticCode::assumed_material, usual_reflectances()});
     if (turned_ != 0)
-      scene_.notes.push_back("CADModelAzimuth " + rounded(turned_) +
-                             " is left out: north is y unless a scene file says otherwise");
-    for (std::string& note :
-         note_on("windows without a visible transmittance in their type have 0.7", materials_.assumed()))
-      scene_.notes.push_back(std::move(note));
+      scene_.diagnostics.push_back(
+          {DiagnosticCode::north_of_file,
+           "CADModelAzimuth " + rounded(turned_) + " is left out: north is y unless a scene file says otherwise"});
+    scene_.diagnostics =
+        merged({std::move(scene_.diagnostics),
+                note_on(DiagnosticCode::assumed_material,
+                        "windows without a visible transmittance in their type have 0.7", materials_.assumed())});
     scene_ = left_out_.on(std::move(scene_));
     return std::move(scene_);
   }

@@ -228,9 +228,10 @@ class HoneybeeScene {
       add(mesh, "", value_or(mesh, "is_detached", true) ? "context" : "exterior_shade");
     for (const HbJson& grid : list_of(radiance_of(model), "sensor_grids")) add_grid(grid);
     for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
-    for (std::string& note :
-         note_on("modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown()))
-      scene_.notes.push_back(std::move(note));
+    scene_.diagnostics =
+        merged({std::move(scene_.diagnostics),
+                note_on(DiagnosticCode::assumed_material,
+                        "modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown())});
     scene_ = left_out_.on(std::move(scene_));
   }
   Scene scene() && { return std::move(scene_); }
@@ -426,8 +427,9 @@ class HoneybeeScene {
     const Vector way = hb_points(HbJson::array({view.at("direction")}), 1).front();
     const double angle = value_or(view, "v_size", 60.0);
     if (!(way.stableNorm() > 0) || !(angle > 0 && angle < 180)) {
-      scene_.notes.push_back("view '" + view.at("identifier").get<std::string>() +
-                             "' is no perspective below 180 degrees: left out");
+      scene_.diagnostics.push_back(
+          {DiagnosticCode::simplified_part,
+           "view '" + view.at("identifier").get<std::string>() + "' is no perspective below 180 degrees: left out"});
       return;
     }
     scene_.cameras.push_back({eye, eye + way.stableNormalized(), angle, view.at("identifier").get<std::string>()});

@@ -75,8 +75,9 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
     const auto mean = colours.by_file.find(file);
     if (mean == colours.by_file.end()) {
       material.texture.reset();
-      scene.notes.push_back("the picture " + file + " of material '" + material.name + "' " + colours.faults.at(file) +
-                            "; it is grey instead, reflectance 0.5");
+      scene.diagnostics.push_back(
+          {DiagnosticCode::unreadable_picture, "the picture " + file + " of material '" + material.name + "' " +
+                                                   colours.faults.at(file) + "; it is grey instead, reflectance 0.5"});
       continue;
     }
     const auto texture = colours.textures.find(file);
@@ -84,8 +85,9 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
         painted(std::move(material), mean->second, texture == colours.textures.end() ? nullptr : texture->second);
     if (material.stated_pane) panes.push_back(material.name);
   }
-  for (std::string& note : note_on("textures of panes are replaced by their mean colour", panes))
-    scene.notes.push_back(std::move(note));
+  scene.diagnostics =
+      merged({std::move(scene.diagnostics), note_on(DiagnosticCode::simplified_picture,
+                                                    "textures of panes are replaced by their mean colour", panes)});
   std::vector<std::string> contents = {bytes};
   contents.insert(contents.end(), colours.digests.begin(), colours.digests.end());
   scene.sha256 = sha256(contents);
@@ -161,8 +163,9 @@ Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictu
   }
   if (!pictures.empty()) scene.inputs.resize(scene.materials.size());
   for (const auto& [m, picture] : pictures) scene.inputs[m] = picture.file;
-  for (std::string& note : note_on("textures of other than diffuse colours are ignored", ignored))
-    scene.notes.push_back(std::move(note));
+  scene.diagnostics =
+      merged({std::move(scene.diagnostics),
+              note_on(DiagnosticCode::simplified_part, "textures of other than diffuse colours are ignored", ignored)});
   return scene;
 }
 
@@ -207,7 +210,7 @@ class AssimpCollector {
 
   Scene scene() && {
     scene_.texture_maps = mapped_.maps();
-    for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), mapped_.notes()});
     return left_out_.on(std::move(scene_));
   }
 

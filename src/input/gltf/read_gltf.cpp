@@ -247,13 +247,13 @@ std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
 }
 
 // One sentence per property that the materials have and the simulation ignores or simplifies.
-std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
-  std::vector<std::string> notes;
-  const auto name = [&](const std::string& sentence, const std::vector<std::string>& names) {
-    for (std::string& text : note_on(sentence, names)) notes.push_back(std::move(text));
+Diagnostics notes_on_materials(const GltfModel& gltf) {
+  Diagnostics notes;
+  const auto name = [&](DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names) {
+    notes = merged({std::move(notes), note_on(code, sentence, names)});
   };
-  const auto note = [&](const std::string& sentence, const GltfProperty& property) {
-    name(sentence, names_with(gltf, property));
+  const auto note = [&](DiagnosticCode code, const std::string& sentence, const GltfProperty& property) {
+    name(code, sentence, names_with(gltf, property));
   };
   const auto has_texture = [&](bool is_decoded) {
     return [is_decoded](const GltfModel& of, const tinygltf::Material& material) {
@@ -268,18 +268,23 @@ std::vector<std::string> notes_on_materials(const GltfModel& gltf) {
     const bool has_mean = texture_color(of, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
     return (has_mean && !has_place) || texture_color(of, material.emissiveTexture.index).has_value();
   };
-  note("textures of lamps, panes and mirrors are replaced by their mean colour", is_used_whole);
+  note(DiagnosticCode::simplified_picture, "textures of lamps, panes and mirrors are replaced by their mean colour",
+       is_used_whole);
   for (const auto& [image, fault] : gltf.picture_faults) {
     const tinygltf::Image& found = gltf.model.images[static_cast<std::size_t>(image)];
     const std::string& uri = found.uri.empty() ? found.name : found.uri;
-    notes.push_back("image " + std::to_string(image) + (uri.empty() ? "" : " (" + uri.substr(0, 80) + ")") + " " +
-                    fault);
+    notes.push_back(
+        {DiagnosticCode::unreadable_picture,
+         "image " + std::to_string(image) + (uri.empty() ? "" : " (" + uri.substr(0, 80) + ")") + " " + fault});
   }
-  note("textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
-  note("metallic surfaces are simulated as matt ones of their base colour", is_matt_metal);
-  name(covered_note, covered_shares(gltf));
-  note("transparency by textures is ignored, factors alone count", has_unknown_holes);
-  note("masks that leave nothing of a surface are ignored: it is opaque", is_masked_away);
+  note(DiagnosticCode::unreadable_picture,
+       "textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
+  note(DiagnosticCode::simplified_part, "metallic surfaces are simulated as matt ones of their base colour",
+       is_matt_metal);
+  name(DiagnosticCode::cut_out_material, covered_note, covered_shares(gltf));
+  note(DiagnosticCode::simplified_part, "transparency by textures is ignored, factors alone count", has_unknown_holes);
+  note(DiagnosticCode::simplified_part, "masks that leave nothing of a surface are ignored: it is opaque",
+       is_masked_away);
   return notes;
 }
 
@@ -337,13 +342,14 @@ class GltfCollector {
   }
 
   Scene scene() && {
-    const auto note = [&](const char* what, std::size_t count) {
-      if (count > 0) scene_.notes.push_back(what + std::to_string(count));
+    const auto note = [&](DiagnosticCode code, const char* what, std::size_t count) {
+      if (count > 0) scene_.diagnostics.push_back({code, what + std::to_string(count), count});
     };
-    note("parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
-    note("parts with vertex colours, which are ignored: ", colored_);
+    note(DiagnosticCode::assumed_material,
+         "parts without a material, which get the material 'default' (reflectance 0.5): ", without_material_);
+    note(DiagnosticCode::simplified_part, "parts with vertex colors, which are ignored: ", colored_);
     scene_.texture_maps = mapped_.maps();
-    for (std::string& sentence : mapped_.notes()) scene_.notes.push_back(std::move(sentence));
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), mapped_.notes()});
     return left_out_.on(std::move(scene_));
   }
 
@@ -468,14 +474,6 @@ std::vector<int> top_nodes(const tinygltf::Model& model) {
   return tops;
 }
 
-std::vector<std::string> notes_on_model(const tinygltf::Model& model) {
-  std::vector<std::string> notes;
-  if (!model.animations.empty() || !model.skins.empty()) {
-    notes.emplace_back("animations and skins are ignored: the model is taken as it stands");
-  }
-  return notes;
-}
-
 Scene with_lost_lights(Scene scene, const tinygltf::Model& model) {
   LeftOut lost;
   for (const tinygltf::Light& light : model.lights)
@@ -491,7 +489,9 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.sha256 = sha256(gltf.files.bytes);
   scene.inputs = gltf.files.names;
   scene.materials = gltf_materials(gltf);
-  scene.notes = notes_on_model(gltf.model);
+  if (!gltf.model.animations.empty() || !gltf.model.skins.empty())
+    scene.diagnostics.push_back(
+        {DiagnosticCode::simplified_part, "animations and skins are ignored: the model is taken as it stands"});
   scene = with_lost_lights(std::move(scene), gltf.model);
 
   // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
@@ -506,7 +506,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
 
   // 3. What is not simulated.
   scene.unsimulated = unsimulated(gltf);
-  for (std::string& note : notes_on_materials(gltf)) scene.notes.push_back(std::move(note));
+  scene.diagnostics = merged({std::move(scene.diagnostics), notes_on_materials(gltf)});
   return scene;
 }
 

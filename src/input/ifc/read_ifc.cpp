@@ -149,8 +149,10 @@ class IfcScene {
     scene_.north = north.normalized();
     scene_.north_stated = true;
     if (scene_.north.y() < 1)
-      scene_.notes.push_back("true north of the file: [" + rounded(scene_.north.x()) + ", " +
-                             rounded(scene_.north.y()) + ", 0]; the key north of a scene file overrules it");
+      scene_.diagnostics.push_back(
+          {DiagnosticCode::north_of_file, "true north of the file: [" + rounded(scene_.north.x()) + ", " +
+                                              rounded(scene_.north.y()) +
+                                              ", 0]; the key north of a scene file overrules it"});
   }
 
   void add_element(const IfcJson& line) {

@@ -244,7 +244,8 @@ Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
     }
     scene.vertices.emplace_back(scene.metres_per_unit * point);
   }
-  if (find(element, {"red", "diffuse_red"})) scene.notes.emplace_back("the colours of the vertices are ignored");
+  if (find(element, {"red", "diffuse_red"}))
+    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colors of the vertices are ignored"});
   return scene;
 }
 
@@ -274,7 +275,8 @@ Scene with_faces(Scene scene, const PlyElement& element, PlyBody& body) {
         scene.polygons.push_back(polygon_of(values, body));
     }
   }
-  if (find(element, {"red", "diffuse_red"})) scene.notes.emplace_back("the colours of the faces are ignored");
+  if (find(element, {"red", "diffuse_red"}))
+    scene.diagnostics.push_back({DiagnosticCode::simplified_part, "the colors of the faces are ignored"});
   return left_out.on(std::move(scene));
 }
 

@@ -18,7 +18,7 @@
 #include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/unique_names.h"
-#include "scene/problem_face.h"
+#include "scene/model_face.h"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ struct MitsubaMeshes {
   std::map<std::string, std::optional<FacetedShape>> by_file;
   std::vector<std::filesystem::path> files;  // that were read
   std::vector<std::string> digests;          // of the same
-  std::vector<Problem> losses;               // parts that are left out
+  Diagnostics losses;                        // parts that are left out
 };
 
 constexpr std::array kinds_of_shapes = {"obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"};
@@ -80,8 +80,8 @@ std::optional<FacetedShape> mesh_of(const MitsubaFile& file, const pugi::xml_nod
   Scene scene = kind == "obj" ? read_obj(path, 1, meshes.confine) : read_ply(path, 1);
   meshes.files.push_back(path);
   meshes.digests.push_back(scene.sha256);
-  for (const Problem& problem : scene.problems) {
-    if (is_loss(problem.kind)) meshes.losses.push_back(problem);
+  for (const Diagnostic& problem : scene.diagnostics) {
+    if (is_loss(problem.code)) meshes.losses.push_back(problem);
   }
   found->second = faces_of(std::move(scene));
   return found->second;
@@ -335,8 +335,8 @@ Scene with_mitsuba_emitter(Scene scene, const MitsubaFile& file, const pugi::xml
   const bool is_sky = kind == "envmap" || kind == "sky" || kind == "sunsky" || kind == "sun" || kind == "constant";
   const char* const remedy =
       is_sky ? ": give the scene a sky by --sky, e.g. --sky overcast:10000lx, a sun by --sun" : "";
-  scene.problems.push_back(
-      {ProblemKind::left_out, 1, "the emitter " + kind + " (" + file.place(emitter) + ") is left out" + remedy, {}});
+  scene.diagnostics.push_back(
+      {DiagnosticCode::left_out, "the emitter " + kind + " (" + file.place(emitter) + ") is left out" + remedy});
   return scene;
 }
 
@@ -397,7 +397,7 @@ class MitsubaReader {
     scene_.inputs.insert(scene_.inputs.end(), meshes_.files.begin(), meshes_.files.end());
     scene_.sha256 = sha256(digests);
     scene_ = left_out_.on(std::move(scene_));
-    scene_.problems.insert(scene_.problems.end(), meshes_.losses.begin(), meshes_.losses.end());
+    scene_.diagnostics = merged({std::move(scene_.diagnostics), meshes_.losses});
     return with_used_materials(std::move(scene_));
   }
 

@@ -240,17 +240,20 @@ std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& fi
   return materials;
 }
 
-std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials) {
-  std::vector<std::string> notes;
-  const auto note = [&](const std::string& sentence, bool (*property)(const MtlMaterial&)) {
-    const std::vector<std::string> names = names_with(materials, property);
-    if (!names.empty()) notes.push_back(sentence + ": " + listed(names));
+Diagnostics notes_on_ignored(std::span<const MtlMaterial> materials) {
+  Diagnostics notes;
+  const auto add = [&](DiagnosticCode code, const std::string& sentence, bool (*property)(const MtlMaterial&)) {
+    notes = merged({std::move(notes), note_on(code, sentence, names_with(materials, property))});
   };
-  note("no Kd, so the reflectance is 0 (0.6 with a texture)", [](const MtlMaterial& m) { return !m.has_reflectance; });
+  const auto note = [&](const std::string& sentence, bool (*property)(const MtlMaterial&)) {
+    add(DiagnosticCode::simplified_part, sentence, property);
+  };
+  add(DiagnosticCode::assumed_material, "no Kd, so the reflectance is 0 (0.6 with a texture)",
+      [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
-  note("map_Kd counts by the mean colour of its picture",
-       [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
+  add(DiagnosticCode::simplified_picture, "map_Kd counts by the mean colour of its picture",
+      [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
   note("textures are ignored, Kd is used instead",
        [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1U : 0U) + (m.has_mask ? 1U : 0U); });
   note("d and Tr contradict each other, the surface is opaque",

@@ -97,7 +97,7 @@ struct MtlMaterial {
 std::vector<MtlMaterial> read_mtl(const std::string& text, const std::string& file);
 
 /// One sentence per property that these materials have and the simulation ignores.
-std::vector<std::string> notes_on_ignored(std::span<const MtlMaterial> materials);
+Diagnostics notes_on_ignored(std::span<const MtlMaterial> materials);
 
 /// The numbers of materials with properties that have a place in the plan.
 std::vector<UnsimulatedMaterials> unsimulated(std::span<const MtlMaterial> materials);

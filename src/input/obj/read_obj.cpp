@@ -1,7 +1,7 @@
 #include "input/obj/read_obj.h"
 
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
-#include "patchlight/scene/problem.h"
 
 #include "base/lower_case.h"
 #include "base/rounded.h"
@@ -37,7 +37,7 @@ struct Libraries {
   std::vector<MtlMaterial> materials;        // of those with the same name only the first counts
   std::vector<std::string> texts;            // the files' bytes, for the checksum
   std::vector<std::filesystem::path> files;  // the files, and the textures that they name
-  std::vector<Problem> problems;  // files that are missing, or beside the model instead of where they should be
+  Diagnostics problems;  // files that are missing, or beside the model instead of where they should be
 };
 
 // A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
@@ -130,21 +130,17 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& library
   return files;
 }
 
-std::optional<Problem> problem_with(const LibraryFile& file, const std::string& where) {
+std::optional<Diagnostic> problem_with(const LibraryFile& file, const std::string& where) {
   const std::string found = "mtllib (" + where + ") names '" + file.name + "', ";
   if (file.place.empty()) {
-    return Problem{ProblemKind::missing_material_file,
-                   1,
-                   found +
-                       "which is neither there nor beside the model; the materials that no other file defines "
-                       "are grey, reflectance 0.5",
-                   {}};
+    return Diagnostic{DiagnosticCode::missing_material_file,
+                      found +
+                          "which is neither there nor beside the model; the materials that no other file defines "
+                          "are grey, reflectance 0.5"};
   }
   if (!file.moved) return std::nullopt;
-  return Problem{ProblemKind::moved_material_file,
-                 1,
-                 found + "which is not there; " + file.place.string() + " is taken instead",
-                 {}};
+  return Diagnostic{DiagnosticCode::moved_material_file,
+                    found + "which is not there; " + file.place.string() + " is taken instead"};
 }
 
 // Reads the files that the statements name. A file that is not where its name says is looked for beside the model,
@@ -160,7 +156,7 @@ Libraries read_libraries(const std::filesystem::path& obj, const std::vector<Obj
     const std::string where = at_line(obj, statement.line);
     for (const LibraryFile& file : library_files(beside, statement, where, confine)) {
       if (!names.insert(file.name).second) continue;
-      const std::optional<Problem> problem = problem_with(file, where);
+      const std::optional<Diagnostic> problem = problem_with(file, where);
       if (problem) libraries.problems.push_back(*problem);
       if (file.place.empty() || !places.insert(file.place).second) continue;
       libraries.texts.push_back(read_text(file.place, where, "the material file " + file.place.string()));
@@ -243,14 +239,15 @@ std::vector<MtlMaterial> with_pictures(std::vector<MtlMaterial> materials, const
 }
 
 // One sentence for each map_Kd and map_d whose picture cannot be read, and one on those that leave holes.
-std::vector<std::string> notes_on_pictures(std::span<const MtlMaterial> materials, const PictureColours& pictures) {
-  std::vector<std::string> notes;
+Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const PictureColours& pictures) {
+  Diagnostics notes;
   const auto note = [&](const MtlMaterial& material, const std::string& picture, const std::string& statement,
                         const std::string& instead) {
     const auto fault = pictures.faults.find(picture);
     if (fault == pictures.faults.end()) return;
-    notes.push_back("the picture " + picture + " of material '" + material.name + "' (" + statement +
-                    " of its material file) " + fault->second + "; " + instead);
+    notes.push_back({DiagnosticCode::unreadable_picture, "the picture " + picture + " of material '" + material.name +
+                                                             "' (" + statement + " of its material file) " +
+                                                             fault->second + "; " + instead});
   };
   std::vector<std::string> covered;
   for (const MtlMaterial& material : materials) {
@@ -259,8 +256,7 @@ std::vector<std::string> notes_on_pictures(std::span<const MtlMaterial> material
     note(material, material.mask_picture, "map_d, line " + std::to_string(material.mask_line), "it makes no holes");
     if (material.covered < 1) covered.push_back(material.name + " (" + rounded(material.covered) + ")");
   }
-  for (std::string& text : note_on(covered_note, covered)) notes.push_back(std::move(text));
-  return notes;
+  return merged({std::move(notes), note_on(DiagnosticCode::cut_out_material, covered_note, covered)});
 }
 
 constexpr double default_reflectance = 0.5;
@@ -394,18 +390,16 @@ Scene with_texture_maps(Scene scene, const ObjScan& scan, const ObjPalette& pale
     polygon.texture_map = mapped.add(corner_points(scene, static_cast<PolygonIndex>(f)), places, polygon.line);
   }
   scene.texture_maps = mapped.maps();
-  for (std::string& note : mapped.notes()) scene.notes.push_back(std::move(note));
+  scene.diagnostics = merged({std::move(scene.diagnostics), mapped.notes()});
   return scene;
 }
 
-std::vector<std::string> notes_on(const ObjScan& scan, const ObjPalette& palette) {
-  std::vector<std::string> notes;
-  const auto note = [&](const std::string& what, std::size_t count) {
-    if (count > 0) notes.push_back(what + ": " + std::to_string(count));
-  };
-  note("colours of vertices, ignored", scan.colored_vertices);
-  for (std::string& sentence : notes_on_ignored(palette.materials)) notes.push_back(std::move(sentence));
-  return notes;
+Diagnostics notes_on(const ObjScan& scan, const ObjPalette& palette) {
+  Diagnostics notes;
+  if (scan.colored_vertices > 0)
+    notes.push_back(
+        {DiagnosticCode::simplified_part, "colors of vertices, ignored: " + std::to_string(scan.colored_vertices)});
+  return merged({std::move(notes), notes_on_ignored(palette.materials)});
 }
 
 // "a (room.obj:3), b (room.obj:9) and 12 more".
@@ -416,8 +410,7 @@ std::string first_few(const std::vector<std::string>& texts) {
   return listed(std::span(texts).first(count)) + rest;
 }
 
-std::vector<Problem> problems_with_names(const std::string& file, const ObjScan& scan,
-                                         std::span<const MtlMaterial> defined) {
+Diagnostics problems_with_names(const std::string& file, const ObjScan& scan, std::span<const MtlMaterial> defined) {
   std::vector<std::uint8_t> has_face(scan.materials.size(), 0);
   for (const ObjFace& face : scan.faces) {
     if (face.material != no_material) has_face[face.material] = 1;
@@ -430,21 +423,20 @@ std::vector<Problem> problems_with_names(const std::string& file, const ObjScan&
       unknown.push_back("'" + used.name + "' (" + at_line(file, used.line) + ")");
     }
   }
-  std::vector<Problem> problems;
+  Diagnostics problems;
   if (!unknown.empty()) {
-    problems.push_back({ProblemKind::unknown_material,
-                        unknown.size(),
+    problems.push_back({DiagnosticCode::unknown_material,
                         "usemtl names " + first_few(unknown) +
                             ", which no material file defines; such materials are grey, reflectance 0.5",
-                        {}});
+                        unknown.size()});
   }
-  Problem without{ProblemKind::no_material, 0, {}, {}};
+  Diagnostic without{DiagnosticCode::no_material};
   for (std::size_t k = 0; k < scan.faces.size(); ++k) {
     if (scan.faces[k].material != no_material) continue;
     without.faces.push_back({{}, 0, scan.faces[k].line, static_cast<std::uint32_t>(k)});
   }
   without.count = without.faces.size();
-  without.what = "faces without a material, as there is no usemtl above them: " + std::to_string(without.count) +
+  without.text = "faces without a material, as there is no usemtl above them: " + std::to_string(without.count) +
                  "; they get the material 'default', reflectance 0.5 unless a material file defines it";
   if (without.count > 0) problems.push_back(std::move(without));
   return problems;
@@ -502,16 +494,12 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   scene = with_polygons(std::move(scene), parse_shapes(scan, file.string()), scan, palette.of_face);
   scene.file = file.string();
   scene.metres_per_unit = metres_per_unit;
-  scene.notes = notes_on(scan, palette);
   scene.unsimulated = unsimulated(palette.materials);
-  for (std::string& note : notes_on_pictures(palette.materials, pictures)) scene.notes.push_back(std::move(note));
+  scene.diagnostics = merged({libraries.problems, problems_with_names(file.string(), scan, libraries.materials),
+                              notes_on(scan, palette), notes_on_pictures(palette.materials, pictures)});
   scene = with_texture_maps(std::move(scene), scan, palette);
   scene.lamp_hints = lamp_hints(palette.materials);
   scene.inputs = libraries.files;
-  scene.problems = libraries.problems;
-  for (Problem& problem : problems_with_names(file.string(), scan, libraries.materials)) {
-    scene.problems.push_back(std::move(problem));
-  }
   scene = scan.left_out.on(std::move(scene));
 
   // 4. The checksum of everything read.

@@ -160,7 +160,8 @@ Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
     const std::string name = "source " + source.name;
     if (source.degrees <= most_degrees_of_a_sun && !source.has_pattern && !scene.sun) {
       scene.sun = far_sun(source);
-      scene.notes.push_back(name + " of " + rounded(source.degrees) + " degrees is the sun");
+      scene.diagnostics.push_back(
+          {DiagnosticCode::simplified_light, name + " of " + rounded(source.degrees) + " degrees is the sun"});
     } else if (is_sky(source)) {
       scene.sky =
           with_half(scene.sky.value_or(Sky{.zenith_radiance = rgb(0, 0, 0), .ground_radiance = rgb(0, 0, 0)}), source);

@@ -189,7 +189,7 @@ void note_share(LeftOut& notes, const FloorGrid& grid, const std::string& floor,
   if (share >= nearly_all) return;
   notes.add("sensors '" + grid.name +
                 "' cover a part of the floor only, as a roof or a solid takes the rest; floor and share",
-            floor + " " + rounded(100 * share, 2) + " %");
+            floor + " " + rounded(100 * share, 2) + " %", DiagnosticCode::missing_sensors);
 }
 
 std::vector<PolygonIndex> polygons_of_group(const Scene& scene, const FloorGrid& grid) {
@@ -220,7 +220,7 @@ FloorSensors over_floor(const Scene& scene, const FloorGrid& grid) {
             "\nhint: reduce spacing or from_walls");
   LeftOut notes;
   note_share(notes, grid, grid.group, over.share);
-  return {{std::move(over.group)}, notes.on({}).notes};
+  return {{std::move(over.group)}, notes.on({}).diagnostics};
 }
 
 bool is_meant(const NamedRoom& room, const FloorGrid& grid) {
@@ -268,7 +268,7 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
     if (over.group.sensors.empty()) {
       notes.add("rooms without sensors of '" + grid.name + "', as their floors have no free, level place " +
                     (grid.from_walls ? rounded(*grid.from_walls) + " m from the walls" : "that is wide enough"),
-                room.name);
+                room.name, DiagnosticCode::missing_sensors);
       continue;
     }
     note_share(notes, grid, room.name, over.share);
@@ -280,7 +280,7 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
                                          (grid.from_walls ? ", " + rounded(*grid.from_walls) + " m from the walls;"
                                                           : std::string(";")) +
                                          " expected a smaller from_walls or spacing");
-  return {std::move(groups), notes.on({}).notes};
+  return {std::move(groups), notes.on({}).diagnostics};
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const Tom
 /// Grids over floors.
 struct FloorSensors {
   std::vector<SensorGroup> groups;
-  std::vector<std::string> notes;  ///< on rooms without sensors, or with sensors over a part of the floor
+  Diagnostics notes;  ///< on rooms without sensors, or with sensors over a part of the floor
 };
 
 /// The grid over the floor of the groups that it names, or one over that of each of the rooms, without places in

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "patchlight/base/diagnostics.h"
+
 #include <nlohmann/json.hpp>
 
 namespace patchlight {
@@ -9,6 +11,15 @@ template <class Values>
 nlohmann::ordered_json json_array(const Values& values) {
   auto array = nlohmann::ordered_json::array();
   for (const auto& value : values) array.push_back(value);
+  return array;
+}
+
+/// Diagnostics as objects with their code, severity and text.
+inline nlohmann::ordered_json json_of(const Diagnostics& diagnostics) {
+  auto array = nlohmann::ordered_json::array();
+  for (const Diagnostic& found : diagnostics)
+    array.push_back(
+        {{"code", name_of(found.code)}, {"severity", name_of(severity_of(found.code))}, {"text", found.text}});
   return array;
 }
 

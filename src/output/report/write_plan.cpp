@@ -4,6 +4,7 @@
 
 #include "output/file/write_bytes.h"
 #include "output/report/decisions_part.h"
+#include "output/report/json_array.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,10 +30,10 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
                       {"solve_cpu_seconds", cost.solve_seconds},
                       {"sensors", cost.sensors},
                       {"sensor_cpu_seconds", cost.sensor_seconds}};
-  json["sides_notes"] = plan.sides.notes;
-  json["notes"] = plan.notes;
-  json["scene_warnings"] = warnings_of(scene);
-  json["scene_notes"] = remarks_of(scene);
+  json["sides_notes"] = json_of(plan.sides.notes);
+  json["notes"] = json_of(plan.notes);
+  json["scene_warnings"] = json_of(chosen(scene.diagnostics, makes_results_wrong));
+  json["scene_notes"] = json_of(remarks_of(scene));
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -36,7 +36,7 @@ Json sensors_part(const SensorFacts& sensors) {
     if (group.mean_daylight_factor) entry["mean_daylight_factor_percent"] = *group.mean_daylight_factor;
     part["groups"].push_back(std::move(entry));
   }
-  part["warnings"] = sensors.warnings;
+  part["warnings"] = json_of(sensors.warnings);
   return part;
 }
 
@@ -87,8 +87,8 @@ Json scene_part(const SceneFacts& scene) {
   part["materials"] = scene.materials;
   part["metres_per_unit"] = scene.metres_per_unit;
   part["up"] = json_array(scene.up);
-  part["warnings"] = scene.warnings;
-  part["notes"] = scene.notes;
+  part["warnings"] = json_of(scene.warnings);
+  part["notes"] = json_of(scene.notes);
   if (are_of_wavelengths(scene.bands)) part["bands"] = bands_part(scene.bands);
   return part;
 }
@@ -164,8 +164,8 @@ Json plan_part(const Report& report) {
   part["tolerance"] = tolerance_of(plan.solver);
   part["max_iterations"] = plan.solver.max_iterations;
   part["emit_from_back"] = plan.sides.emit_from_back;
-  part["sides_notes"] = plan.sides.notes;
-  part["notes"] = report.notes;
+  part["sides_notes"] = json_of(plan.sides.notes);
+  part["notes"] = json_of(report.notes);
   part["decisions"] = decisions_part(plan.decisions);
   return part;
 }

@@ -57,15 +57,15 @@ Json sky_part(const Scene& scene) {
   return part;
 }
 
-Json problem_part(const Scene& scene, const Problem& problem) {
+Json problem_part(const Scene& scene, const Diagnostic& problem) {
   Json part;
-  part["kind"] = name_of(problem.kind);
-  part["severity"] = name_of(severity_of(problem.kind));
+  part["kind"] = name_of(problem.code);
+  part["severity"] = name_of(severity_of(problem.code));
   part["count"] = problem.count;
-  part["what"] = problem.what;
+  part["what"] = problem.text;
   part["faces"] = Json::array();
   for (std::size_t k = 0; k < std::min(most_faces, problem.faces.size()); ++k) {
-    const ProblemFace& face = problem.faces[k];
+    const ModelFace& face = problem.faces[k];
     Json entry;
     entry["file"] = face.file < scene.files.size() ? scene.files[face.file] : scene.file;
     entry["line"] = face.line;
@@ -81,7 +81,7 @@ Json sides_part(const SceneReport& report) {
   part["take_part"] = report.sides->kept;
   part["of"] = 2 * report.polygons;
   part["area_m2"] = report.sides->area;
-  part["notes"] = report.sides->notes;
+  part["notes"] = json_of(report.sides->notes);
   return part;
 }
 
@@ -115,8 +115,9 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   json["sun"] = sun_part(scene);
   json["sky"] = sky_part(scene);
   json["problems"] = Json::array();
-  for (const Problem& problem : report.problems) json["problems"].push_back(problem_part(scene, problem));
-  json["notes"] = scene.notes;
+  for (const Diagnostic& found : report.diagnostics)
+    if (!is_note(found.code)) json["problems"].push_back(problem_part(scene, found));
+  json["notes"] = json_of(chosen(report.diagnostics, is_note));
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -19,12 +19,12 @@ namespace {
 
 // One cell of the file.
 struct Cell {
-  const ProblemFace* face;
+  const ModelFace* face;
   int problem;   // 0: none; else the place of the problem in the report, from 1
   int severity;  // 0 nothing to 3 error
 };
 
-ProblemFace face_of(const Scene& scene, PolygonIndex p) {
+ModelFace face_of(const Scene& scene, PolygonIndex p) {
   const Polygon& polygon = scene.polygons[p];
   return {corner_points(scene, p), polygon.file, polygon.line, polygon.face};
 }
@@ -32,18 +32,18 @@ ProblemFace face_of(const Scene& scene, PolygonIndex p) {
 int number_of(Severity severity) { return 3 - static_cast<int>(severity); }
 
 // The faces of all problems that can be drawn, then the polygons that no problem concerns.
-std::vector<Cell> cells_of(const SceneReport& report, const std::vector<ProblemFace>& polygons) {
+std::vector<Cell> cells_of(const SceneReport& report, const std::vector<ModelFace>& polygons) {
   std::vector<Cell> cells;
   std::map<std::uint32_t, bool> is_bad;
-  for (std::size_t k = 0; k < report.problems.size(); ++k) {
-    const Problem& problem = report.problems[k];
-    for (const ProblemFace& face : problem.faces) {
+  for (std::size_t k = 0; k < report.diagnostics.size(); ++k) {
+    const Diagnostic& problem = report.diagnostics[k];
+    for (const ModelFace& face : problem.faces) {
       if (face.corners.empty()) continue;
-      cells.push_back({&face, static_cast<int>(k) + 1, number_of(severity_of(problem.kind))});
+      cells.push_back({&face, static_cast<int>(k) + 1, number_of(severity_of(problem.code))});
       is_bad[face.face] = true;
     }
   }
-  for (const ProblemFace& polygon : polygons) {
+  for (const ModelFace& polygon : polygons) {
     if (!is_bad.contains(polygon.face)) cells.push_back({&polygon, 0, 0});
   }
   return cells;
@@ -67,7 +67,7 @@ void add_strings(vtkPolyData& polygons, const char* name, const std::vector<std:
 }  // namespace
 
 void write_problems(const std::filesystem::path& file, const Scene& scene, const SceneReport& report) {
-  std::vector<ProblemFace> all;
+  std::vector<ModelFace> all;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) all.push_back(face_of(scene, p));
   const std::vector<Cell> cells = cells_of(report, all);
 
@@ -96,9 +96,9 @@ void write_problems(const std::filesystem::path& file, const Scene& scene, const
 
   std::vector<std::string> names = {"nothing wrong"};
   std::vector<std::string> sentences = {""};
-  for (const Problem& problem : report.problems) {
-    names.emplace_back(name_of(problem.kind));
-    sentences.push_back(problem.what);
+  for (const Diagnostic& problem : report.diagnostics) {
+    names.emplace_back(name_of(problem.code));
+    sentences.push_back(problem.text);
   }
   add_strings(*polygons, "problem_names", names);
   add_strings(*polygons, "problem_sentences", sentences);

@@ -16,12 +16,16 @@ function writeHead() {
   byId("lead").textContent = parts.join(" ");
 }
 
-function problemParts(show) {
-  return data.problems.map((problem) => {
-    const line = element("p", problem.severity === "remark" ? {} : {class: "warning"}, `${problem.severity}: ${problem.what} `);
-    if (show && problem.outlines.length > 0) {
+function diagnosticParts(show) {
+  const {report} = data;
+  const all = [...data.diagnostics, ...(report ? report.plan.notes : []), ...(report && report.sensors ? report.sensors.warnings : [])];
+  const isFirst = (found, k) => all.findIndex((other) => other.text === found.text) === k;
+  return all.filter(isFirst).map((found) => {
+    const isGrave = found.severity === "error" || found.severity === "warning";
+    const line = element("p", isGrave ? {class: "warning"} : {}, `${found.severity}: ${found.code}: ${found.text} `);
+    if (show && found.outlines && found.outlines.length > 0) {
       const button = element("button", {type: "button"}, "Show in the model");
-      button.addEventListener("click", () => show(problem.outlines));
+      button.addEventListener("click", () => show(found.outlines));
       line.append(button);
     }
     return line;
@@ -42,9 +46,7 @@ async function writeTables(show) {
   if (report && report.sensors) section("sensors", "Sensors", ...await sensorParts(report.sensors, data.sensors || []));
   if (data.comparison) section("comparison", "Comparison of solvers", ...comparisonParts(data.comparison));
   if (data.study) section("study", "Convergence study", ...studyParts(data.study));
-  const notes = [...data.scene_notes, ...(report ? report.plan.notes : [])];
-  const warnings = report && report.sensors ? report.sensors.warnings : [];
-  section("notes", "Notes and problems", ...problemParts(show), notes.length + warnings.length > 0 ? list([...new Set(notes), ...warnings]) : null);
+  section("notes", "Notes and problems", ...diagnosticParts(show));
   if (report) {
     section("accuracy", "Refinement", ...accuracyParts(report));
     section("materials", "Materials", materialsTable(report));

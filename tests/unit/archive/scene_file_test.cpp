@@ -77,6 +77,13 @@ void expect_same_lights(const Scene& a, const Scene& b) {
               std::tie(b.cameras[k].eye, b.cameras[k].target, b.cameras[k].name));
 }
 
+void expect_same(const Diagnostics& a, const Diagnostics& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k)
+    EXPECT_EQ(std::tie(a[k].code, a[k].text, a[k].count, a[k].area),
+              std::tie(b[k].code, b[k].text, b[k].count, b[k].area));
+}
+
 void expect_same(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.vertices, b.vertices);
   ASSERT_EQ(a.polygons.size(), b.polygons.size());
@@ -113,12 +120,13 @@ void expect_same(const Scene& a, const Scene& b) {
   }
   expect_same_lights(a, b);
   EXPECT_EQ(std::tie(a.groups, a.file, a.files, a.sha256), std::tie(b.groups, b.file, b.files, b.sha256));
-  EXPECT_EQ(std::tie(a.metres_per_unit, a.up, a.up_stated, a.notes),
-            std::tie(b.metres_per_unit, b.up, b.up_stated, b.notes));
+  EXPECT_EQ(std::tie(a.metres_per_unit, a.up, a.up_stated), std::tie(b.metres_per_unit, b.up, b.up_stated));
+  expect_same(a.diagnostics, b.diagnostics);
 }
 
 void expect_same(const KeptSides& a, const KeptSides& b) {
-  EXPECT_EQ(std::tie(a.front, a.back, a.emit_from_back, a.notes), std::tie(b.front, b.back, b.emit_from_back, b.notes));
+  EXPECT_EQ(std::tie(a.front, a.back, a.emit_from_back), std::tie(b.front, b.back, b.emit_from_back));
+  expect_same(a.notes, b.notes);
 }
 
 StoredScene through_a_file(const Scene& scene, const KeptSides& sides) {
@@ -160,7 +168,7 @@ Scene odd_scene() {
   scene.groups = {"", "gro\xc3\x9f", "\x80"};
   scene.file = "mod\xe8le.obj";
   scene.files = {scene.file, "b.obj"};
-  scene.notes = {"a note on \xfe"};
+  scene.diagnostics = {{DiagnosticCode::zero_area, "on \xfe", 7, {}, 1.0 / 3}};
   scene.sha256 = "0123";
   scene.metres_per_unit = 0.1;
   scene.up = Vector(1, -2, 1.0 / 3);
@@ -182,7 +190,7 @@ TEST(SceneFile, KeepsEveryBitOfAnOddScene) {
   KeptSides sides = kept_sides(scene, Sides::front);
   sides.front[2] = 0;
   sides.emit_from_back = true;
-  sides.notes = {"a note", "\xff"};
+  sides.notes = {{DiagnosticCode::unlit_sides, "a note"}, {DiagnosticCode::both_sides, "\xff"}};
   const StoredScene stored = through_a_file(scene, sides);
   expect_same(stored.scene, scene);
   expect_same(stored.sides, sides);

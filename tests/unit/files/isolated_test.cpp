@@ -31,7 +31,7 @@ std::string refusal(const std::function<Scene()>& read) {
 TEST(ReadIsolated, GivesWhatIsRead) {
   Scene scene = test::furnished_room(0.5);
   scene.file = "room.dae";
-  scene.notes = {"a note"};
+  scene.diagnostics = {{DiagnosticCode::read_as_pane, "a note", 3, {}, 0.5}};
   scene.materials[1].transmittance = Spectrum::Constant(1, 0.5);
   scene.materials[1].index = 1.4;
   scene.materials[1].diffuse_transmittance = Spectrum::Constant(1, 0.25);
@@ -42,7 +42,11 @@ TEST(ReadIsolated, GivesWhatIsRead) {
   EXPECT_EQ(read.vertices, scene.vertices);
   EXPECT_EQ(read.polygons.size(), scene.polygons.size());
   EXPECT_EQ(read.materials.size(), scene.materials.size());
-  EXPECT_EQ(read.notes, scene.notes);
+  ASSERT_EQ(read.diagnostics.size(), 1U);
+  EXPECT_EQ(read.diagnostics[0].code, DiagnosticCode::read_as_pane);
+  EXPECT_EQ(read.diagnostics[0].text, "a note");
+  EXPECT_EQ(read.diagnostics[0].count, 3U);
+  EXPECT_EQ(read.diagnostics[0].area, 0.5);
   EXPECT_EQ(read.materials[0].transmittance.size(), 0);
   EXPECT_EQ(read.materials[1].transmittance[0], 0.5);
   EXPECT_EQ(read.materials[1].index, 1.4);

@@ -263,7 +263,7 @@ TEST(SensorsFarOff, AreThoseFartherAwayThanTheModelIsLong) {
       {.name = "near", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}, {Point(2.7, 0, 0), Vector::UnitZ()}}}};
   EXPECT_TRUE(sensors_far_off(scene, scene.sensors).empty());
   scene.sensors[0].sensors.push_back({Point(500, 500, 500), Vector::UnitZ()});
-  const std::vector<std::string> warnings = sensors_far_off(scene, scene.sensors);
+  const std::vector<std::string> warnings = texts_of(sensors_far_off(scene, scene.sensors));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("1 sensor lies farther from the model"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("sensor 3"), std::string::npos) << warnings[0];
@@ -338,8 +338,8 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   add(Point(1, 2.5, 0.8), Vector::UnitZ(), 6);      // in the plane of a side, beside it
   scene.sensors.push_back(group);
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found = doubtful_sensors(
-      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder));
+  const std::vector<std::string> found = texts_of(doubtful_sensors(
+      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder)));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].rfind("sensor 2 of 'desk' (room.toml:2) at 1.5, 1.4, 0.8 m lies inside a wall", 0), 0U)
       << found[0];
@@ -372,8 +372,8 @@ TEST(DoubtfulSensors, ManyAreCounted) {
   Scene scene = furnished_room(0.5);
   scene.sensors.push_back({.name = "all", .sensors = std::vector<Sensor>(9, {Point(1.5, 1.4, 0.8), Vector::UnitZ()})});
   const Occluder occluder(scene, Occluder::Blockers::all);
-  const std::vector<std::string> found = doubtful_sensors(
-      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder));
+  const std::vector<std::string> found = texts_of(doubtful_sensors(
+      scene.sensors, place_sensors(scene, scene.sensors, kept_sides(scene, Sides::automatic), occluder)));
   ASSERT_EQ(found.size(), 6U);
   EXPECT_EQ(found[5].rfind("4 more sensors", 0), 0U) << found[5];
 }

@@ -39,7 +39,7 @@ TEST_F(ChosenFaces, TellWhatWentAndLeaveNoMaterialWithoutFaces) {
   const Scene scene = with({}, {"ceiling"});
   ASSERT_EQ(scene.materials.size(), 1U);
   EXPECT_EQ(scene.materials[0].name, "wood");
-  EXPECT_TRUE(any_contains(scene.notes, "1 face of 1 object"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "1 face of 1 object"));
 }
 
 TEST_F(ChosenFaces, RefuseNamesOfNothing) {

@@ -141,7 +141,8 @@ TEST_F(Formats, ColorsBecomeReflectancesAndNamesGroups) {
     EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.5, 0.5, 0.5)).all()) << scene.materials[0].reflectance;
   }
   const Scene ifc = read_scene(folder_ / "room.ifc");
-  EXPECT_TRUE(any_contains(ifc.groups, "room"));
+  EXPECT_TRUE(std::any_of(ifc.groups.begin(), ifc.groups.end(),
+                          [](const std::string& name) { return name.find("room") != std::string::npos; }));
 }
 
 TEST_F(Formats, WithoutMaterialsAllIsOneGreyThatCanBeSet) {
@@ -153,7 +154,7 @@ TEST_F(Formats, WithoutMaterialsAllIsOneGreyThatCanBeSet) {
     ASSERT_EQ(scene.materials.size(), 1U);
     EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.5, 0.5, 0.5)).all());
     EXPECT_TRUE((scene.materials[0].exitance == 2 * std::numbers::pi * rgb(1, 1, 1)).all());
-    EXPECT_TRUE(any_contains(scene.notes, "'default'"));
+    EXPECT_TRUE(any_contains(scene.diagnostics, "'default'"));
   }
 }
 
@@ -184,8 +185,8 @@ TEST_F(Formats, PlyPassesOverWhatIsNotGeometry) {
             "end_header\r\n2 7 8\r\n9 0 0 0 255\r\n9 0 0 1 255\r\n9 0 1 1 255\r\n9 0 1 0 255\r\n1 4 0 1 2 3\r\n"));
   EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 1));
   EXPECT_EQ(scene.polygons[0].line, 21U);
-  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 1U) << "light";
-  EXPECT_TRUE(any_contains(scene.notes, "colours of the vertices"));
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U) << "light";
+  EXPECT_TRUE(any_contains(scene.diagnostics, "colors of the vertices"));
 }
 
 TEST_F(Formats, OffMayHaveCommentsColorsAndCountsBesideTheKeyWord) {
@@ -272,7 +273,7 @@ TEST_F(Formats, GltfTexturesAreReplacedByTheirMean) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)" + std::string(image) + "\"}]}";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.4, 0.2, 0.1), 1e-12)) << scene.materials[0].reflectance;
-  EXPECT_TRUE(any_contains(scene.notes, "no good place in their picture, whose mean counts: "));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "no good place in their picture, whose mean counts: "));
 }
 
 TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
@@ -284,7 +285,7 @@ TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "absent.png"}]})";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.8, 0.4, 0.2), 1e-12));
-  EXPECT_TRUE(any_contains(scene.notes, "could not be read are ignored, the colour factor is used alone: wall"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "could not be read are ignored, the colour factor is used alone: wall"));
 }
 
 TEST_F(Formats, UnknownExtensionsAreRefusedByName) {
@@ -361,7 +362,7 @@ TEST_F(Formats, EqualMaterialsOfSeveralFilesAreShared) {
   ASSERT_EQ(scene.polygons.size(), 4U);
   EXPECT_EQ(scene.polygons[0].material, scene.polygons[2].material);
   EXPECT_EQ(scene.materials[scene.polygons[3].material].name, "floor (b.obj)");
-  EXPECT_TRUE(any_contains(scene.notes, "'floor (b.obj)'"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "'floor (b.obj)'"));
 }
 
 TEST_F(Formats, AFaultIsFoundInItsOwnFile) {

@@ -2,6 +2,7 @@
 
 #include "input/building/cut_openings.h"
 #include "model_files.h"
+#include "support/diagnostics_of.h"
 
 #include <map>
 
@@ -89,7 +90,7 @@ TEST_F(Gbxml, OpeningsAreCutOutOfTheirSurface) {
   EXPECT_NEAR(area_of(scene, "door"), 1, 1e-12);
   EXPECT_TRUE(scene.up_stated);
   EXPECT_EQ(scene.up, Vector::UnitZ());
-  for (const Problem& problem : scene.problems) ADD_FAILURE() << problem.what;
+  for (const Diagnostic& problem : test::problems_of(scene)) ADD_FAILURE() << problem.text;
 }
 
 TEST_F(Gbxml, LengthsHaveTheUnitOfTheFile) {
@@ -141,7 +142,7 @@ TEST_F(Gbxml, SidesHaveTheReflectancesOfTheirKind) {
   const Material& pane = scene.materials.at(scene.polygons.at(named(scene, "window")).material);
   EXPECT_EQ(pane.name, "clear");
   EXPECT_NEAR(pane.transmittance[0], 0.6, 1e-15);
-  EXPECT_TRUE(any_contains(scene.notes, "walls and doors 0.5"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "walls and doors 0.5"));
 }
 
 TEST_F(Gbxml, WhatIsNotStatedIsSaidAndAirIsOpen) {
@@ -153,8 +154,8 @@ TEST_F(Gbxml, WhatIsNotStatedIsSaidAndAirIsOpen) {
   EXPECT_THROW(named(scene, "gap"), std::runtime_error);
   EXPECT_THROW(named(scene, "glazed"), std::runtime_error);  // the window takes all of it
   EXPECT_NEAR(area_of(scene, "all"), 9, 1e-12);
-  EXPECT_TRUE(any_contains(scene.notes, "have 0.7: OperableWindow"));
-  EXPECT_TRUE(any_contains(scene.notes, "open, left out: 1 (gap)"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "have 0.7: OperableWindow"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "open, left out: 1 (gap)"));
 }
 
 TEST_F(Gbxml, WhatCannotBeReadIsRefusedWithItsLine) {

@@ -198,7 +198,7 @@ TEST_F(Ifc, AzimuthsAreFromTrueNorth) {
   EXPECT_LT((read_scene(written, options).sun.value().direction - to_sun).norm(), 1e-6);
   const Scene plain = read_scene(written);
   EXPECT_LT((plain.north - Vector(0.5, std::sqrt(0.75), 0)).norm(), 1e-9);
-  EXPECT_TRUE(any_contains(plain.notes, "true north of the file"));
+  EXPECT_TRUE(any_contains(plain.diagnostics, "true north of the file"));
   const std::string model = "[[model]]\nfile = \"slab.ifc\"\n";
   const Scene turned = read_scene(write("turned.toml", model + "rotate = {axis = \"z\", degrees = 30}\n"));
   EXPECT_LT((turned.north - Vector::UnitY()).norm(), 1e-9);
@@ -210,7 +210,7 @@ TEST_F(Ifc, ElementsWithoutFacesAreNamed) {
   file.element("IFCSLAB", "slab", file.box(wall_at(0), IfcWay::upward));
   file.element("IFCWALL", "no such body", "#9999");
   const Scene scene = read_scene(write("missing.ifc", file.text()));
-  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 1U);
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U);
 }
 
 // Text that is no IFC file, parts of one and bytes of another value: a scene or one sentence that names the file.

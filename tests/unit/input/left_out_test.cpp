@@ -11,8 +11,8 @@ namespace {
 
 class Losses : public ModelFiles {};
 
-constexpr auto little = ProblemKind::little_left_out;
-constexpr auto much = ProblemKind::left_out;
+constexpr auto little = DiagnosticCode::little_left_out;
+constexpr auto much = DiagnosticCode::left_out;
 
 std::vector<Point> square_of(double area) {
   const double side = std::sqrt(area);
@@ -39,9 +39,9 @@ TEST_F(Losses, FacesOfMoreThanOnePercentOfTheAreaMakeResultsWrong) {
     left_out.lose_face("worse", "wall", {.corners = square_of(area / 2)});
     const Scene scene = repair(left_out.on(wall()));
     EXPECT_EQ(number_of(scene, kind), 2U) << area;
-    EXPECT_EQ(scene.problems.size(), 2U);
-    EXPECT_NEAR(scene.problems.at(0).area, area / 2, 1e-12);
-    EXPECT_EQ(warnings_of(scene).size(), kind == much ? 2U : 0U);
+    EXPECT_EQ(scene.diagnostics.size(), 2U);
+    EXPECT_NEAR(scene.diagnostics.at(0).area, area / 2, 1e-12);
+    EXPECT_EQ(chosen(scene.diagnostics, makes_results_wrong).size(), kind == much ? 2U : 0U);
     EXPECT_EQ(remarks_of(scene).size(), kind == much ? 0U : 2U);
   }
 }
@@ -56,7 +56,7 @@ TEST_F(Losses, WholeObjectsAndLightSourcesMakeResultsWrong) {
   const Scene scene = left_out.on(wall());
   EXPECT_EQ(number_of(scene, little), 4U);
   EXPECT_EQ(number_of(scene, much), 2U);
-  EXPECT_EQ(scene.notes.size(), 1U);
+  EXPECT_EQ(number_of(scene, DiagnosticCode::simplified_part), 1U);
 }
 
 // In each format two sound faces and one with two corners, in one object.

@@ -3,6 +3,8 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "support/diagnostics_of.h"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -19,7 +21,7 @@ int count(const std::vector<std::uint8_t>& kept) { return static_cast<int>(std::
 
 TEST(Meshes, EveryModelIsReadWithoutRemarks) {
   for (const char* name : {"cornell_box", "furnace_cube", "parallel_squares", "perpendicular_squares", "two_rooms"}) {
-    EXPECT_TRUE(mesh(name).notes.empty()) << name;
+    EXPECT_TRUE(test::notes_of(mesh(name)).empty()) << name;
   }
 }
 

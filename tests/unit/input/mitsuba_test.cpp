@@ -197,7 +197,7 @@ TEST_F(Mitsuba, EmittersWithoutSurfacesAreLights) {
   ASSERT_TRUE(sun.sun);
   EXPECT_LT((sun.sun->direction - Vector(0, .6, .8)).norm(), 1e-12);
   EXPECT_EQ(sun.sun->normal_irradiance[0], 7);
-  EXPECT_EQ(number_of(read(shape + "<emitter type=\"sunsky\"/>"), ProblemKind::left_out), 1U);
+  EXPECT_EQ(number_of(read(shape + "<emitter type=\"sunsky\"/>"), DiagnosticCode::left_out), 1U);
 }
 
 // Square to the view, 90 degrees across in 2 : 1: half of it up and down, 2 atan(1 / 2).
@@ -237,9 +237,9 @@ TEST_F(Mitsuba, WhatIsLostIsNamed) {
       "type=\"disk\"><transform name=\"to_world\"><translate z=\"5\"/></transform><bsdf "
       "type=\"null\"/></shape><emitter type=\"envmap\"/>");
   EXPECT_EQ(scene.polygons.size(), 6U);
-  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 3U) << "absent.obj, teapot, envmap";
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 3U) << "absent.obj, teapot, envmap";
   for (const char* const part : {"roughconductor becomes matt: 1 (Metal)", "null is nothing"})
-    EXPECT_TRUE(any_contains(scene.notes, part)) << part;
+    EXPECT_TRUE(any_contains(scene.diagnostics, part)) << part;
 }
 
 TEST_F(Mitsuba, WhatCannotBeReadIsRefusedWithItsLine) {

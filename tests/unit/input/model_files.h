@@ -25,15 +25,15 @@ inline std::string refusal(const std::filesystem::path& file, const ReadOptions&
   return {};
 }
 
-inline bool any_contains(const std::vector<std::string>& texts, const std::string& part) {
-  return std::any_of(texts.begin(), texts.end(),
-                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
+inline bool any_contains(const Diagnostics& diagnostics, const std::string& part) {
+  return std::any_of(diagnostics.begin(), diagnostics.end(),
+                     [&](const Diagnostic& found) { return found.text.find(part) != std::string::npos; });
 }
 
-/// How many things the problems of a kind count together.
-inline std::size_t number_of(const Scene& scene, ProblemKind kind) {
+/// How many things the diagnostics of a code count together.
+inline std::size_t number_of(const Scene& scene, DiagnosticCode code) {
   std::size_t number = 0;
-  for (const Problem& problem : scene.problems) number += problem.kind == kind ? problem.count : 0;
+  for (const Diagnostic& found : scene.diagnostics) number += found.code == code ? found.count : 0;
   return number;
 }
 

@@ -182,9 +182,9 @@ TEST(WithoutOpenings, CutsWithinTheOutlineOnly) {
   EXPECT_NEAR(area_of(cut.parts), 11, 1e-9);
 }
 
-const Problem* loss(const Scene& scene, const std::string& name) {
-  for (const Problem& problem : scene.problems)
-    if (problem.kind == ProblemKind::left_out && problem.what.find(name) != std::string::npos) return &problem;
+const Diagnostic* loss(const Scene& scene, const std::string& name) {
+  for (const Diagnostic& problem : scene.diagnostics)
+    if (problem.code == DiagnosticCode::left_out && problem.text.find(name) != std::string::npos) return &problem;
   return nullptr;
 }
 

@@ -211,7 +211,7 @@ TEST_F(Radiance, EvenHalfSpheresAreSkyAndGroundAndOthersAreNamed) {
       "sky source up 0 0 4 0 0 1 180\n";
   const Scene cloudy = scene_with(varies + square("wall", 0));
   EXPECT_FALSE(cloudy.sky);
-  EXPECT_EQ(number_of(cloudy, ProblemKind::left_out), 1U);
+  EXPECT_EQ(number_of(cloudy, DiagnosticCode::left_out), 1U);
   ReadOptions with_sky;
   with_sky.daylight.sky = SkyKind::cie_overcast;
   EXPECT_TRUE(scene_with(varies + square("wall", 0), with_sky).sky);
@@ -229,9 +229,9 @@ TEST_F(Radiance, WhatIsLeftOutIsNamed) {
         "patterns and textures of materials, left out: 1 "
         "(papered)",
         "surfaces without a material (void), left out: 1 (void_face)", "1 (fog)", "1 (odd (BRTDfunc))"}) {
-    EXPECT_TRUE(any_contains(scene.notes, part)) << part;
+    EXPECT_TRUE(any_contains(scene.diagnostics, part)) << part;
   }
-  EXPECT_EQ(number_of(scene, ProblemKind::left_out), 5U) << "an instance, a mesh, a spotlight and two programs";
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 5U) << "an instance, a mesh, a spotlight and two programs";
   EXPECT_FALSE(std::filesystem::exists(folder_ / "touched"));
 }
 

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "model_files.h"
+#include "support/diagnostics_of.h"
 
 #include <algorithm>
 #include <cmath>
@@ -157,7 +158,7 @@ TEST_F(ReadScene, FacesWithoutMaterialGetADefaultAndANote) {
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.5, 0.5, 0.5)).all());
   EXPECT_TRUE((scene.materials[0].exitance == 0).all());
-  EXPECT_EQ(number_of(scene, ProblemKind::no_material), 1U);
+  EXPECT_EQ(number_of(scene, DiagnosticCode::no_material), 1U);
 }
 
 // The mean of the picture in linear light, times Kd unless that is 0 or not stated; files that are no pictures do not
@@ -178,9 +179,10 @@ TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
   EXPECT_LT((scene.materials[1].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((scene.materials[2].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_EQ(scene.materials[3].reflectance[0], .4);
-  EXPECT_TRUE(any_contains(scene.notes, "no good place in their picture, whose mean counts: 3 (first at "));
-  EXPECT_TRUE(any_contains(scene.notes, "bad.png of material 'bad' (map_Kd, line 11 of its material file) is cut off"));
-  EXPECT_TRUE(any_contains(scene.notes, "Kd is used instead: bad"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "no good place in their picture, whose mean counts: 3 (first at "));
+  EXPECT_TRUE(
+      any_contains(scene.diagnostics, "bad.png of material 'bad' (map_Kd, line 11 of its material file) is cut off"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "Kd is used instead: bad"));
 }
 
 TEST_F(ReadScene, NamesWhatItIgnores) {
@@ -198,11 +200,11 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   const Scene scene = read_scene(write("m.obj", text));
   for (const char* note :
        {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted, leaves", "picture) is ignored: leaves",
-        "matt: mirror", "texture): bare", "colours of vertices, ignored: 1"}) {
-    EXPECT_TRUE(any_contains(scene.notes, note)) << note;
+        "matt: mirror", "texture): bare", "colors of vertices, ignored: 1"}) {
+    EXPECT_TRUE(any_contains(scene.diagnostics, note)) << note;
   }
-  EXPECT_EQ(number_of(scene, ProblemKind::little_left_out), 3U) << "two lines, one point";
-  EXPECT_FALSE(any_contains(scene.notes, "plain"));
+  EXPECT_EQ(number_of(scene, DiagnosticCode::little_left_out), 3U) << "two lines, one point";
+  EXPECT_FALSE(any_contains(scene.diagnostics, "plain"));
   ASSERT_EQ(scene.unsimulated.size(), 2U);
   EXPECT_EQ(scene.unsimulated[0].property, UnsimulatedProperty::mirror);
   EXPECT_EQ(scene.unsimulated[0].materials, 2U) << "glossy, mirror";
@@ -215,7 +217,7 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   // The Ka of a material with a Ke needs no mention.
   write("m.mtl", "newmtl bare\nKd 0 0 0\nKa 2 2 2\nKe 1 1 1\n");
   const Scene lit = read_scene(write("m.obj", "mtllib m.mtl\n" + square + "usemtl bare\nf 1 2 3\n"));
-  EXPECT_TRUE(lit.notes.empty());
+  EXPECT_TRUE(test::notes_of(lit).empty());
   EXPECT_TRUE(lit.lamp_hints.empty());
 }
 
@@ -302,9 +304,9 @@ TEST_F(ReadScene, RefusesBadStatementsNamingTheLine) {
   }
 }
 
-const Problem* find(const Scene& scene, ProblemKind kind) {
-  for (const Problem& problem : scene.problems) {
-    if (problem.kind == kind) return &problem;
+const Diagnostic* find(const Scene& scene, DiagnosticCode code) {
+  for (const Diagnostic& problem : scene.diagnostics) {
+    if (problem.code == code) return &problem;
   }
   return nullptr;
 }
@@ -316,17 +318,17 @@ TEST_F(ReadScene, FindsALibraryBesideTheModelWhereverItsPathLeads) {
                            "C:\\My Models\\Room.MTL", "room.mtl", "maps/room.mtl"}) {
     const Scene scene = read_scene(write("m.obj", std::string("mtllib ") + name + rest));
     EXPECT_TRUE(is_lamp(scene, 0)) << name;
-    const Problem* problem = find(scene, ProblemKind::moved_material_file);
+    const Diagnostic* problem = find(scene, DiagnosticCode::moved_material_file);
     ASSERT_NE(problem, nullptr) << name;
-    EXPECT_TRUE(contains(problem->what, "m.obj:1")) << problem->what;
-    EXPECT_TRUE(contains(problem->what, name)) << problem->what;
+    EXPECT_TRUE(contains(problem->text, "m.obj:1")) << problem->text;
+    EXPECT_TRUE(contains(problem->text, name)) << problem->text;
   }
   std::filesystem::create_directory(folder_ / "sub");
   write("sub/b.mtl", materials);
   for (const char* name : {"sub/b.mtl", "sub\\b.mtl", "./sub/b.mtl"}) {
     const Scene scene = read_scene(write("m.obj", std::string("mtllib ") + name + rest));
     EXPECT_TRUE(is_lamp(scene, 0)) << name;
-    EXPECT_TRUE(scene.problems.empty()) << name;
+    EXPECT_TRUE(test::problems_of(scene).empty()) << name;
   }
 }
 
@@ -339,17 +341,17 @@ TEST_F(ReadScene, UndefinedMaterialsAreGreyKeepTheirNamesAndAreReported) {
   EXPECT_TRUE((scene.materials[0].reflectance == 0.5).all());
   EXPECT_TRUE((scene.materials[0].exitance == 1).all()) << "--set knows the name";
   EXPECT_EQ(scene.materials[1].name, "default") << "usemtl without a name";
-  ASSERT_EQ(scene.problems.size(), 3U);
-  EXPECT_EQ(scene.problems[0].kind, ProblemKind::missing_material_file);
-  EXPECT_TRUE(contains(scene.problems[0].what, "gone.mtl"));
-  EXPECT_EQ(scene.problems[1].kind, ProblemKind::unknown_material);
-  EXPECT_TRUE(contains(scene.problems[1].what, "'brick' (" + scene.file + ":6)")) << scene.problems[1].what;
-  EXPECT_EQ(scene.problems[2].kind, ProblemKind::no_material);
+  ASSERT_EQ(test::problems_of(scene).size(), 3U);
+  EXPECT_EQ(scene.diagnostics[0].code, DiagnosticCode::missing_material_file);
+  EXPECT_TRUE(contains(scene.diagnostics[0].text, "gone.mtl"));
+  EXPECT_EQ(scene.diagnostics[1].code, DiagnosticCode::unknown_material);
+  EXPECT_TRUE(contains(scene.diagnostics[1].text, "'brick' (" + scene.file + ":6)")) << scene.diagnostics[1].text;
+  EXPECT_EQ(scene.diagnostics[2].code, DiagnosticCode::no_material);
 }
 
 TEST_F(ReadScene, AMaterialThatNoFaceUsesNeedNotBeDefined) {
   const Scene scene = read_scene(write("m.obj", square + "usemtl\nf 1 2 3 4\nusemtl brick\n"));
-  EXPECT_EQ(find(scene, ProblemKind::unknown_material), nullptr);
+  EXPECT_EQ(find(scene, DiagnosticCode::unknown_material), nullptr);
 }
 
 TEST_F(ReadScene, AFaceMayHaveMoreCornersThanAByteCounts) {
@@ -380,7 +382,7 @@ TEST_F(ReadScene, ShortFacesAreLeftOutAndCounted) {
   const Scene scene = read_scene(write("m.obj", square + "f 1 2\nf 1 2 3 4\nf 3\nf\n"));
   ASSERT_EQ(scene.polygons.size(), 1U);
   EXPECT_EQ(scene.polygons[0].line, 6U);
-  const Problem* problem = find(scene, ProblemKind::little_left_out);
+  const Diagnostic* problem = find(scene, DiagnosticCode::little_left_out);
   ASSERT_NE(problem, nullptr);
   EXPECT_EQ(problem->count, 3U);
   EXPECT_EQ(problem->faces.at(1).line, 7U);
@@ -396,7 +398,7 @@ TEST_F(ReadScene, TabsNamesInAnyAlphabetAndSpacesDoNotMatter) {
   EXPECT_EQ(scene.materials.at(0).name, "wei\xC3\x9F");
   EXPECT_EQ(scene.materials[0].reflectance[0], 0.75);
   EXPECT_EQ(scene.groups.at(scene.polygons.at(0).group), "W\xC3\xA4nde");
-  EXPECT_TRUE(scene.problems.empty());
+  EXPECT_TRUE(test::problems_of(scene).empty());
 }
 
 TEST_F(ReadScene, AFaceMayStandAboveItsVertices) {

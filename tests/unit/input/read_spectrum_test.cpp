@@ -146,13 +146,13 @@ TEST_F(SpectraOfScenes, OfSolvedScenesTakeNewLight) {
   };
   const Scene scene = read(bands);
   EXPECT_TRUE((changed(scene, {"wall.reflectance=0.3", "lamp.radiance=0"}).materials[0].reflectance == 0.3).all());
-  EXPECT_FALSE(any_contains(changed(scene, {"wall.reflectance=0.3"}).notes, "new light"));
+  EXPECT_FALSE(any_contains(changed(scene, {"wall.reflectance=0.3"}).diagnostics, "new light"));
   const std::size_t m = scene.materials[0].name == "lamp" ? 0 : 1;
   // A colour is spread as one that is read, which takes the place of what the lamp was like.
   const Scene orange = changed(scene, {"lamp.radiance=20,10,5"});
   expect_spread(orange.materials[m].exitance, lamp("[20, 10, 5]").materials[m].exitance,
                 std::numbers::pi * luminance(rgb(20, 10, 5)), scene.bands);
-  EXPECT_TRUE(any_contains(orange.notes, "new light is spread over the bands"));
+  EXPECT_TRUE(any_contains(orange.diagnostics, "new light is spread over the bands"));
   // A number makes it brighter.
   expect_spread(changed(orange, {"lamp.exitance=7"}).materials[m].exitance, orange.materials[m].exitance,
                 luminance(rgb(7, 7, 7)), scene.bands);

@@ -5,6 +5,7 @@
 
 #include "model_files.h"
 #include "room_files.h"
+#include "support/diagnostics_of.h"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -61,7 +62,7 @@ TEST_F(StatedMirrors, AreSmoothWithAnIlluminationThatReflects) {
     expect_mirror(scene.materials[1], rgb(0.9, 0.8, 0.7), rgb(0.1, 0.1, 0.1));
     expect_matt(scene.materials[0]);
     EXPECT_TRUE(scene.unsimulated.empty());
-    EXPECT_EQ(scene.notes.size(), 1U) << "the note that names the mirrors";
+    EXPECT_EQ(test::codes_of(test::notes_of(scene)), std::vector{DiagnosticCode::read_as_mirror});
   }
 }
 
@@ -74,7 +75,7 @@ TEST_F(StatedMirrors, WhatIsRoughOrHasNoReflectionIsGloss) {
     SCOPED_TRACE(statements);
     const Scene scene = of_mtl(statements);
     expect_matt(scene.materials[1]);
-    EXPECT_FALSE(any_contains(scene.notes, "read as mirrors"));
+    EXPECT_FALSE(any_contains(scene.diagnostics, "read as mirrors"));
     ASSERT_EQ(scene.unsimulated.size(), 1U);
     EXPECT_EQ(scene.unsimulated[0].property, UnsimulatedProperty::mirror);
   }
@@ -84,8 +85,8 @@ TEST_F(StatedMirrors, WhatIsRoughOrHasNoReflectionIsGloss) {
 TEST_F(StatedMirrors, ReflectNoMoreThanTheyDoNotScatter) {
   const Scene scene = of_mtl("Kd 0.5 0.3 0\nKs 0.9 0.5 1.5\nillum 3\n");
   expect_mirror(scene.materials[1], rgb(0.5, 0.5, 1), rgb(0.5, 0.3, 0));
-  EXPECT_TRUE(any_contains(scene.notes, "lowered to what they do not reflect diffusely: mirror"));
-  EXPECT_FALSE(any_contains(of_mtl("Kd 0.9 0.9 0.9\nKs 0.1 0.1 0.1\nillum 3\n").notes, "lowered"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to what they do not reflect diffusely: mirror"));
+  EXPECT_FALSE(any_contains(of_mtl("Kd 0.9 0.9 0.9\nKs 0.1 0.1 0.1\nillum 3\n").diagnostics, "lowered"));
   expect_mirror(mirror_of(polished, settings({"mirror.reflectance=0.2"})), rgb(1 - 0.2, 1 - 0.2, 0.7),
                 rgb(0.2, 0.2, 0.2));
 }
@@ -98,10 +99,10 @@ TEST_F(StatedMirrors, ASmoothMetalOfGltfReflectsItsBaseColor) {
   const Scene scene = of_gltf(smooth_metal);
   expect_mirror(scene.materials[0], rgb(0.9, 0.6, 0.3), rgb(0, 0, 0));
   EXPECT_TRUE(scene.unsimulated.empty());
-  EXPECT_TRUE(any_contains(scene.notes,
+  EXPECT_TRUE(any_contains(scene.diagnostics,
                            "wall (metallicFactor 1 and roughnessFactor 0: specular reflectance 0.9, 0.6, "
                            "0.3); read.settings wall.specular_reflectance=0 makes it matt"));
-  EXPECT_FALSE(any_contains(scene.notes, "metallic surfaces"));
+  EXPECT_FALSE(any_contains(scene.diagnostics, "metallic surfaces"));
 }
 
 TEST_F(StatedMirrors, OtherMetalsOfGltfAreMatt) {
@@ -114,7 +115,7 @@ TEST_F(StatedMirrors, OtherMetalsOfGltfAreMatt) {
     expect_matt(scene.materials[0]);
     EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.9, 0.6, 0.3)).all());
     EXPECT_EQ(scene.unsimulated.size(), 1U);
-    EXPECT_TRUE(any_contains(scene.notes, "matt ones of their base colour: wall"));
+    EXPECT_TRUE(any_contains(scene.diagnostics, "matt ones of their base colour: wall"));
   }
 }
 
@@ -139,8 +140,8 @@ TEST_F(StatedMirrors, ASettingMakesThemMatt) {
     expect_matt(found);
     EXPECT_TRUE((found.reflectance == expected).all()) << found.reflectance;
   }
-  EXPECT_FALSE(any_contains(of_mtl(polished, matt).notes, "mirror"));
-  EXPECT_TRUE(any_contains(of_mtl(polished).notes,
+  EXPECT_FALSE(any_contains(of_mtl(polished, matt).diagnostics, "mirror"));
+  EXPECT_TRUE(any_contains(of_mtl(polished).diagnostics,
                            "mirrors, which reflect light without scattering it: mirror (illum 3: specular reflectance "
                            "0.9, 0.8, 0.7); read.settings mirror.specular_reflectance=0 makes it matt"));
 }

@@ -18,7 +18,7 @@ inline Scene tiny_scene() {
   scene.materials = {{"floor", rgb(0.5, 0.25, 0.125), rgb(0, 0, 0)}, {"lamp", rgb(0.1, 0.2, 0.3), rgb(8, 4, 2)}};
   scene.file = "tiny.obj";
   scene.sha256 = "00ff";
-  scene.notes = {"a note"};
+  scene.diagnostics = {{DiagnosticCode::simplified_part, "a note"}};
   return scene;
 }
 

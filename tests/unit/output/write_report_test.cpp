@@ -48,7 +48,8 @@ TEST(WriteReport, TellsWhatWasAskedDoneAndFound) {
   EXPECT_EQ(report["version"], version());
   EXPECT_EQ(report["command_line"], "patchlight solve tiny.obj");
   EXPECT_EQ(report["input"]["sha256"], "00ff");
-  EXPECT_EQ(report["input"]["notes"][0], "a note");
+  EXPECT_EQ(report["input"]["notes"][0]["code"], "simplified_part");
+  EXPECT_EQ(report["input"]["notes"][0]["text"], "a note");
   EXPECT_EQ(report["request"]["max_edge_m"], 0.25);
   EXPECT_TRUE(report["request"]["patches"].is_null());
   EXPECT_EQ(report["plan"]["seed"], (std::uint64_t{1} << 60) + 1);

@@ -80,14 +80,14 @@ TEST(WritePage, TakesHostileNamesForText) {
                                  "\U0001F4A1 &lt; \\u003c", "@DATA@ @TITLE@", "line\nbreak\u2028"}) {
     Scene scene = tiny_scene();
     scene.file = name;
-    scene.notes = {name};
+    scene.diagnostics = {{DiagnosticCode::simplified_part, name}};
     scene.materials[0].name = name;
     scene.groups = {name};
     const std::string page = page_with(scene, tiny_simulation());
     EXPECT_EQ(count(page, "<"), elements) << name;
     const Json data = data_in(page);
     EXPECT_EQ(data["model"]["materials"][0], name);
-    EXPECT_EQ(data["report"]["input"]["notes"][0], name);
+    EXPECT_EQ(data["report"]["input"]["notes"][0]["text"], name);
   }
 }
 

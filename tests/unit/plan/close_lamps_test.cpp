@@ -21,8 +21,8 @@ TEST(CloseLamps, AreNamedWithTheEdgeThatWouldDoWhereItTakesFewPatches) {
   // 61 m^2 of faces: with edges of 5 cm 24,000 patches, with 1 cm 610,000.
   const auto note = [](double gap) {
     const Scene scene = uplight(gap);
-    const std::vector<std::string> notes = notes_on_close_lamps(scene, Occluder(scene), 0.3);
-    return notes.size() == 1 ? notes[0] : std::string();
+    const Diagnostics notes = notes_on_close_lamps(scene, Occluder(scene), 0.3);
+    return notes.size() == 1 ? notes[0].text : std::string();
   };
   EXPECT_NE(note(0.05).find("mesh.max_edge=0.05"), std::string::npos) << note(0.05);
   EXPECT_EQ(note(0.01).find("mesh.max_edge"), std::string::npos) << note(0.01);

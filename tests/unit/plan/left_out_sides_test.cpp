@@ -29,7 +29,7 @@ TEST(LeftOutSides, AreNoneWithTheSameLamps) {
 
 TEST(LeftOutSides, OfARoomThatWasDarkAreNoted) {
   const KeptSides then = kept_sides(two_cells(1, 0), Sides::automatic);
-  const std::vector<std::string> notes = notes_on_left_out_sides(two_cells(0, 1), then, Sides::automatic);
+  const std::vector<std::string> notes = texts_of(notes_on_left_out_sides(two_cells(0, 1), then, Sides::automatic));
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_NE(notes[0].find("'second'"), std::string::npos) << notes[0];
   EXPECT_EQ(notes[0].find("'first'"), std::string::npos) << notes[0];

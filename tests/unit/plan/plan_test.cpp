@@ -6,6 +6,7 @@
 #include "mesh/nested_mesh.h"
 #include "plan/choose_storage.h"
 #include "plan/memory.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -46,8 +47,8 @@ TEST(MakePlan, SaysThatTheSunIsBelowTheHorizon) {
   EXPECT_TRUE(make_plan(scene, {}).notes.empty());
   scene.sun->direction = Vector(0, std::sqrt(3) / 2, -0.5);
   const Plan plan = make_plan(scene, {});
-  ASSERT_EQ(plan.notes.size(), 1U);
-  EXPECT_NE(plan.notes[0].find("30 degrees below the horizon"), std::string::npos) << plan.notes[0];
+  ASSERT_EQ(codes_of(plan.notes), std::vector{DiagnosticCode::sun_below_horizon});
+  EXPECT_NE(plan.notes[0].text.find("30 degrees below"), std::string::npos) << plan.notes[0].text;
 }
 
 TEST(MakePlan, NamesALuminaireJustBehindTheCeilingThatItShinesThrough) {
@@ -58,9 +59,10 @@ TEST(MakePlan, NamesALuminaireJustBehindTheCeilingThatItShinesThrough) {
     scene.luminaires[0].light = PointLight{Spectrum::Ones(1)};
     const auto notes_at = [&](double height) {
       scene.luminaires[0].position = {2, 1.5, height};
-      const std::vector<std::string> notes = make_plan(scene, {}).notes;
-      return std::count_if(notes.begin(), notes.end(), [](const std::string& note) {
-        return note.find("'downlight'") != std::string::npos && note.find("mm behind a face") != std::string::npos;
+      const Diagnostics notes = make_plan(scene, {}).notes;
+      return std::count_if(notes.begin(), notes.end(), [](const Diagnostic& note) {
+        return note.code == DiagnosticCode::misplaced_luminaire &&
+               note.text.find("mm behind a face") != std::string::npos;
       });
     };
     EXPECT_EQ(notes_at(2.5), 0);
@@ -143,7 +145,7 @@ TEST(MakePlan, TakesRaysForManyPatches) {
   EXPECT_EQ(plan.assembly.storage, Storage::rays);
   EXPECT_EQ(plan.solver.solver, Solver::gmres);
   ASSERT_FALSE(plan.notes.empty());
-  EXPECT_NE(plan.notes.back().find("12000"), std::string::npos) << plan.notes.back();
+  EXPECT_EQ(plan.notes.back().code, DiagnosticCode::rows_of_rays);
 
   const auto storage_with = [&](auto change) {
     Request changed = request;
@@ -324,10 +326,7 @@ TEST(MakePlan, KeepsFormFactorsThatAreGiven) {
 TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
   Scene scene = furnished_room(0.5);
   scene = with_box(std::move(scene), Point(3, 0.5, 0), Point(3.5, 1, 0.5), false);
-  const auto told = [](const Plan& plan) {
-    return std::any_of(plan.notes.begin(), plan.notes.end(),
-                       [](const std::string& note) { return note.find("bent") != std::string::npos; });
-  };
+  const auto told = [](const Plan& plan) { return has(plan.notes, DiagnosticCode::contact_lines); };
   const Plan flat = make_plan(scene, Request());
   EXPECT_FALSE(told(flat));
   const auto on_floor = std::find_if(flat.contacts.on.begin(), flat.contacts.on.end(),
@@ -373,9 +372,7 @@ bool is_long(const ContactLine& line) { return (line.to - line.from).norm() > 30
 // The long ones are followed.
 TEST(Plan, FollowsTheLongestOfTooManyLines) {
   const Plan plan = make_plan(floor_with_many_boxes(), Request());
-  const bool told = std::any_of(plan.notes.begin(), plan.notes.end(),
-                                [](const std::string& note) { return note.find("longest") != std::string::npos; });
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(has(plan.notes, DiagnosticCode::contact_lines));
   EXPECT_GE(std::count_if(plan.contacts.on[0].begin(), plan.contacts.on[0].end(), is_long), 2);
   EXPECT_LE(number_of(plan.contacts), 10'000U);
 }

@@ -6,6 +6,7 @@
 #include "lighting/lighting.h"
 #include "mesh/mesher.h"
 #include "scene/repair.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 #include "visibility/tracing.h"
 
@@ -198,10 +199,7 @@ TEST(ShadowLines, AreLeftOutWhereTheyAreTooMany) {
     scene = with_quad(std::move(scene), {Point(0, x, 2), Point(4, x, 2), Point(4, x + 0.02, 2), Point(0, x + 0.02, 2)});
   }
   const Plan plan = make_plan(scene, patches(100));
-  const bool told = std::any_of(plan.notes.begin(), plan.notes.end(), [](const std::string& note) {
-    return note.find("edges of shadows") != std::string::npos && note.find("too many") != std::string::npos;
-  });
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(has(plan.notes, DiagnosticCode::shadow_edges));
   EXPECT_EQ(number_of(plan.contacts), 0U);
 }
 

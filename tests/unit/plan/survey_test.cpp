@@ -14,9 +14,9 @@ namespace {
 
 using namespace test;
 
-bool has(const SceneReport& report, ProblemKind kind) {
-  return std::any_of(report.problems.begin(), report.problems.end(),
-                     [kind](const Problem& problem) { return problem.kind == kind; });
+bool has(const SceneReport& report, DiagnosticCode kind) {
+  return std::any_of(report.diagnostics.begin(), report.diagnostics.end(),
+                     [kind](const Diagnostic& problem) { return problem.code == kind; });
 }
 
 SceneReport survey_of(const Scene& scene) { return survey(repair(scene)); }
@@ -39,7 +39,7 @@ TEST(Survey, CountsAndMeasures) {
   EXPECT_EQ(report.open_edges, 4U) << "the rim of the lamp";
   EXPECT_NEAR(report.open_edge_length, 4, 1e-12);
   EXPECT_TRUE(report.usable);
-  EXPECT_TRUE(report.problems.empty());
+  EXPECT_TRUE(report.diagnostics.empty());
 }
 
 TEST(Survey, LeavesOutMaterialsThatNoFaceHasAndCountsBacks) {
@@ -57,7 +57,7 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
     Scene scene = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(scale)));
     const SceneReport report = survey_of(scene);
     EXPECT_EQ(report.unit_guess ? report.unit_guess->unit : "", unit);
-    EXPECT_EQ(has(report, ProblemKind::implausible_size), !unit.empty());
+    EXPECT_EQ(has(report, DiagnosticCode::implausible_size), !unit.empty());
   }
   // Read as millimetres, a model in metres is too small.
   Scene small = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
@@ -66,7 +66,7 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
   // No unit is that large.
   Scene tiny = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
   EXPECT_FALSE(survey_of(tiny).unit_guess);
-  EXPECT_TRUE(has(survey_of(tiny), ProblemKind::implausible_size));
+  EXPECT_TRUE(has(survey_of(tiny), DiagnosticCode::implausible_size));
 }
 
 TEST(Survey, DoubtsNoUnitOfASiteWithBuildingsOfSomeHeight) {
@@ -82,7 +82,7 @@ TEST(Survey, DoubtsNoUnitOfASiteWithBuildingsOfSomeHeight) {
 TEST(Survey, DoubtsNoUnitThatTheFileStates) {
   Scene tiny = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
   tiny.unit_stated = true;
-  EXPECT_FALSE(has(survey_of(tiny), ProblemKind::implausible_size));
+  EXPECT_FALSE(has(survey_of(tiny), DiagnosticCode::implausible_size));
   EXPECT_FALSE(survey_of(tiny).unit_guess);
 }
 
@@ -93,18 +93,18 @@ TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
     return Luminaire{.name = "far", .place = "a.toml:7", .position = Point(x, 1, 1), .light = PointLight{}};
   };
   scene.luminaires = {lamp_at(33.9)};
-  EXPECT_FALSE(has(survey_of(scene), ProblemKind::implausible_size)) << "as lamps on masts are";
+  EXPECT_FALSE(has(survey_of(scene), DiagnosticCode::implausible_size)) << "as lamps on masts are";
   EXPECT_TRUE(problems_with_size(scene).empty());
   scene.luminaires.push_back(lamp_at(34.1));
   const SceneReport report = survey_of(scene);
-  ASSERT_TRUE(has(report, ProblemKind::implausible_size));
-  EXPECT_EQ(report.problems.front().what,
+  ASSERT_TRUE(has(report, DiagnosticCode::implausible_size));
+  EXPECT_EQ(report.diagnostics.front().text,
             "1 luminaire lies 30.1 m from the model, which is 5.59 m long (the first: 'far' of a.toml:7). Is its "
             "position in the unit of its file?");
   scene.luminaires.push_back(lamp_at(304));
   ASSERT_EQ(problems_with_size(scene).size(), 1U) << "what solve and plan tell";
   EXPECT_EQ(problems_with_size(scene).front().count, 2U);
-  EXPECT_NE(problems_with_size(scene).front().what.find("2 luminaires lie up to 300 m"), std::string::npos);
+  EXPECT_NE(problems_with_size(scene).front().text.find("2 luminaires lie up to 300 m"), std::string::npos);
 }
 
 // The room's ceiling lies at 3 m.
@@ -122,19 +122,19 @@ TEST(Survey, SpheresThatAFaceCutsAreAWarning) {
   scene.luminaires = {sphere_at(0.05, 0.06), sphere_at(-0.05, 0.06)};
   ASSERT_EQ(problems_with_size(scene).size(), 1U);
   EXPECT_EQ(problems_with_size(scene).front().count, 2U);
-  EXPECT_EQ(problems_with_size(scene).front().what.rfind(
+  EXPECT_EQ(problems_with_size(scene).front().text.rfind(
                 "2 sphere luminaires are cut by faces (the first: 'bulb' (a.toml:7), of radius 0.06 m, whose middle is "
                 "0.05 m from face '",
                 0),
             0U)
-      << problems_with_size(scene).front().what;
+      << problems_with_size(scene).front().text;
   scene.luminaires = {sphere_at(1.5, 4)};
   EXPECT_EQ(problems_with_size(scene).size(), 1U) << "one as large as the room";
 }
 
 TEST(Survey, FullReflectanceIsAWarning) {
-  EXPECT_TRUE(has(survey_of(furnished_room(1)), ProblemKind::full_reflectance));
-  EXPECT_FALSE(has(survey_of(furnished_room(0.99)), ProblemKind::full_reflectance));
+  EXPECT_TRUE(has(survey_of(furnished_room(1)), DiagnosticCode::full_reflectance));
+  EXPECT_FALSE(has(survey_of(furnished_room(0.99)), DiagnosticCode::full_reflectance));
 }
 
 TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
@@ -143,10 +143,10 @@ TEST(Survey, WithoutALampItNamesWhatLooksLikeOne) {
   scene.materials[1].name = "Ceiling Lamp";
   const SceneReport report = survey_of(scene);
   EXPECT_FALSE(report.usable);
-  ASSERT_TRUE(has(report, ProblemKind::no_lamp));
-  EXPECT_EQ(report.problems[0].kind, ProblemKind::no_lamp) << "the worst comes first";
-  EXPECT_NE(report.problems[0].what.find("read.settings 'Ceiling Lamp.radiance=10'"), std::string::npos)
-      << report.problems[0].what;
+  ASSERT_TRUE(has(report, DiagnosticCode::no_lamp));
+  EXPECT_EQ(report.diagnostics[0].code, DiagnosticCode::no_lamp) << "the worst comes first";
+  EXPECT_NE(report.diagnostics[0].text.find("read.settings 'Ceiling Lamp.radiance=10'"), std::string::npos)
+      << report.diagnostics[0].text;
 
   scene.materials[1].name = "Ann's lamp";
   EXPECT_NE(first_light(scene).advice.find("read.settings 'Ann'\\''s lamp.radiance=10'"), std::string::npos)

@@ -57,10 +57,10 @@ TEST(Coverings, DoNotDependOnLampsButALampThatIsCoveredIsNamed) {
   scene = with_quad(std::move(scene), floor_quad, 1);
   EXPECT_EQ(over(scene, 1), Over{0});
   const Coverings coverings = find_coverings(scene, kept_sides(scene, Sides::front));
-  const std::vector<Problem> problems = problems_with_overlaps(scene, coverings);
+  const Diagnostics problems = problems_with_overlaps(scene, coverings);
   ASSERT_EQ(problems.size(), 2U);
-  EXPECT_EQ(problems[0].kind, ProblemKind::covered_lamp);
-  EXPECT_EQ(problems[1].kind, ProblemKind::overlapping_faces);
+  EXPECT_EQ(problems[0].code, DiagnosticCode::covered_lamp);
+  EXPECT_EQ(problems[1].code, DiagnosticCode::overlapping_faces);
   EXPECT_EQ(problems[1].count, 1U);
 }
 

@@ -72,7 +72,7 @@ TEST(LessDetail, ATurnedRodIsABoxThatHoldsIt) {
   EXPECT_NEAR(box.sizes().z(), 1, 1e-9);
   EXPECT_LT(box.sizes().x(), 2 * 0.02 * std::numbers::sqrt2);
   EXPECT_GT(area, 4 * 0.04 * std::cos(std::numbers::pi / 24));
-  EXPECT_FALSE(less.notes.empty());
+  EXPECT_FALSE(less.diagnostics.empty());
 }
 
 // A closed frame around an opening is near its box everywhere, and yet no box.

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "mesh/mesher.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -33,13 +34,9 @@ double area(const Scene& scene) {
   return sum;
 }
 
-std::vector<ProblemKind> kinds(const Scene& scene) {
-  std::vector<ProblemKind> all;
-  for (const Problem& problem : scene.problems) all.push_back(problem.kind);
-  return all;
-}
+std::vector<DiagnosticCode> kinds(const Scene& scene) { return codes_of(scene.diagnostics); }
 
-using Kinds = std::vector<ProblemKind>;
+using Kinds = std::vector<DiagnosticCode>;
 
 // What meshing relies on: every patch has a positive area, and together they have the scene's.
 void expect_meshable(const Scene& scene) {
@@ -62,7 +59,7 @@ void expect_meshable(const Scene& scene) {
 TEST(Repair, LeavesASoundSceneAsItIs) {
   const Scene scene = numbered(furnished_room(0.5));
   const Scene repaired = repair(scene);
-  EXPECT_TRUE(repaired.problems.empty());
+  EXPECT_TRUE(repaired.diagnostics.empty());
   ASSERT_EQ(repaired.polygons.size(), scene.polygons.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     EXPECT_EQ(corner_points(repaired, p), corner_points(scene, p));
@@ -78,10 +75,10 @@ TEST(Repair, IsIdempotent) {
   scene = with_polygon(std::move(scene), {Point(0, 0, 7), Point(1, 0, 7), Point(1, 1, 7.2), Point(0, 1, 7)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 0, 1e-9), Point(0, 1, 0), Point(0, 0.5, 0)});
   Scene once = repair(numbered(std::move(scene)));
-  EXPECT_FALSE(once.problems.empty());
-  std::erase_if(once.problems, [](const Problem&) { return true; });
+  EXPECT_FALSE(once.diagnostics.empty());
+  std::erase_if(once.diagnostics, [](const Diagnostic&) { return true; });
   const Scene twice = repair(once);
-  EXPECT_TRUE(twice.problems.empty());
+  EXPECT_TRUE(twice.diagnostics.empty());
   EXPECT_EQ(twice.polygons.size(), once.polygons.size());
 }
 
@@ -93,8 +90,8 @@ TEST(Repair, WeldsWhatRoundingHasSetApart) {
   for (Point& vertex : scene.vertices) vertex += Vector(jitter(random), jitter(random), jitter(random));
   const Scene repaired = repair(numbered(scene));
   EXPECT_EQ(repaired.vertices.size(), 20U);
-  EXPECT_EQ(kinds(repaired), Kinds{ProblemKind::welded_vertices});
-  EXPECT_EQ(repaired.problems[0].count, scene.vertices.size() - 20);
+  EXPECT_EQ(kinds(repaired), Kinds{DiagnosticCode::welded_vertices});
+  EXPECT_EQ(repaired.diagnostics[0].count, scene.vertices.size() - 20);
   const KeptSides sides = kept_sides(repaired, Sides::automatic);
   EXPECT_EQ(std::count(sides.front.begin(), sides.front.begin() + 6, 1), 6);
   EXPECT_EQ(std::count(sides.back.begin(), sides.back.begin() + 12, 1), 0) << "the room and the box are closed";
@@ -114,7 +111,7 @@ TEST(Repair, LeavesOutRepeatedCornersAndSpikes) {
     ASSERT_EQ(repaired.polygons.size(), 1U);
     EXPECT_EQ(repaired.polygons[0].corners.size(), 4U);
     EXPECT_EQ(area(repaired), 1);
-    EXPECT_EQ(kinds(repaired), Kinds{ProblemKind::repeated_corners});
+    EXPECT_EQ(kinds(repaired), Kinds{DiagnosticCode::repeated_corners});
     expect_meshable(repaired);
   }
   // A spike that ends in the middle of an edge, or goes on along the next one.
@@ -134,12 +131,12 @@ TEST(Repair, LeavesOutFacesWithoutAreaAndCountsThem) {
   scene = with_polygon(std::move(scene), {Point(0, 0, 1), Point(1, 0, 1), Point(0, 0, 1), Point(0, 1, 1)});
   const Scene repaired = repair(numbered(std::move(scene)));
   EXPECT_EQ(repaired.polygons.size(), 1U);
-  ASSERT_EQ(kinds(repaired), Kinds{ProblemKind::zero_area});
-  const Problem& problem = repaired.problems[0];
+  ASSERT_EQ(kinds(repaired), Kinds{DiagnosticCode::zero_area});
+  const Diagnostic& problem = repaired.diagnostics[0];
   EXPECT_EQ(problem.count, 4U);
-  EXPECT_EQ(problem.what.rfind("4 faces (first at room.obj:2)", 0), 0U) << problem.what;
+  EXPECT_EQ(problem.text.rfind("4 faces (first at room.obj:2)", 0), 0U) << problem.text;
   std::vector<std::uint32_t> lines;
-  for (const ProblemFace& face : problem.faces) lines.push_back(face.line);
+  for (const ModelFace& face : problem.faces) lines.push_back(face.line);
   EXPECT_EQ(lines, (std::vector<std::uint32_t>{2, 3, 4, 5}));
 }
 
@@ -153,8 +150,8 @@ TEST(Repair, OfTwoFacesWithOneFrontTheFirstStays) {
     ASSERT_EQ(repaired.polygons.size(), 1U);
     EXPECT_EQ(repaired.polygons[0].material, 0U);
     EXPECT_FALSE(repaired.polygons[0].back_material);
-    ASSERT_EQ(kinds(repaired), Kinds{ProblemKind::duplicate_faces});
-    EXPECT_NE(repaired.problems[0].what.find("1 of them with another material"), std::string::npos);
+    ASSERT_EQ(kinds(repaired), Kinds{DiagnosticCode::duplicate_faces});
+    EXPECT_NE(repaired.diagnostics[0].text.find("1 of them with another material"), std::string::npos);
   }
 }
 
@@ -171,7 +168,7 @@ TEST(Repair, FacesBackToBackBecomeOneWithAMaterialOnEachSide) {
     EXPECT_EQ(material_on(repaired.polygons[0], Side::back), 1U) << "the first of those that face back";
     EXPECT_FALSE(emits(repaired, 0, Side::front));
     EXPECT_TRUE(emits(repaired, 0, Side::back));
-    EXPECT_EQ(kinds(repaired), (Kinds{ProblemKind::duplicate_faces, ProblemKind::two_sided_faces}));
+    EXPECT_EQ(kinds(repaired), (Kinds{DiagnosticCode::duplicate_faces, DiagnosticCode::two_sided_faces}));
     expect_meshable(repaired);
 
     // Both sides are meshed, each with its material.
@@ -184,9 +181,9 @@ TEST(Repair, FacesBackToBackBecomeOneWithAMaterialOnEachSide) {
 TEST(Repair, ALampBehindAFaceThatDoesNotEmitIsAnError) {
   const Quad quad = {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
   const Scene covered = with_quad(with_quad(empty_scene({grey(0.5), grey(0, 3)}), quad, 0), quad, 1);
-  EXPECT_EQ(kinds(repair(numbered(covered))), (Kinds{ProblemKind::covered_lamp, ProblemKind::duplicate_faces}));
+  EXPECT_EQ(kinds(repair(numbered(covered))), (Kinds{DiagnosticCode::covered_lamp, DiagnosticCode::duplicate_faces}));
   const Scene before = with_quad(with_quad(empty_scene({grey(0.5), grey(0, 3)}), quad, 1), quad, 0);
-  EXPECT_EQ(kinds(repair(numbered(before))), Kinds{ProblemKind::duplicate_faces});
+  EXPECT_EQ(kinds(repair(numbered(before))), Kinds{DiagnosticCode::duplicate_faces});
 }
 
 // Both halves of a folded square have half its area, over whichever diagonal it is folded.
@@ -194,7 +191,7 @@ TEST(Repair, CutsBentFacesIntoTrianglesWhereTheyBend) {
   for (const double height : {0.001, 0.1, 1.0, 10.0}) {
     const Scene fold = repair(one_polygon({Point(0, 0, 0), Point(1, 0, height), Point(1, 1, 0), Point(0, 1, height)}));
     EXPECT_EQ(fold.polygons.size(), 2U);
-    EXPECT_EQ(kinds(fold), Kinds{ProblemKind::non_planar});
+    EXPECT_EQ(kinds(fold), Kinds{DiagnosticCode::non_planar});
     EXPECT_EQ(fold.polygons[1].line, 1U);
     expect_meshable(fold);
   }
@@ -210,7 +207,7 @@ TEST(Repair, KeepsConcaveFacesWhole) {
   const Scene scene =
       one_polygon({Point(0, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0), Point(1, 2, 0), Point(0, 2, 0)});
   const Scene repaired = repair(scene);
-  EXPECT_TRUE(repaired.problems.empty());
+  EXPECT_TRUE(repaired.diagnostics.empty());
   EXPECT_EQ(repaired.polygons.size(), 1U);
   expect_meshable(repaired);
 }
@@ -222,13 +219,13 @@ TEST(Repair, CutsFacesThatCrossThemselves) {
   EXPECT_EQ(bow_tie.polygons.size(), 2U);
   EXPECT_DOUBLE_EQ(area(bow_tie), 0.5);
   EXPECT_EQ(front_normal(bow_tie, 0), front_normal(bow_tie, 1)) << "both wings face one way";
-  EXPECT_EQ(bow_tie.problems.at(0).kind, ProblemKind::self_intersecting);
+  EXPECT_EQ(bow_tie.diagnostics.at(0).code, DiagnosticCode::self_intersecting);
   expect_meshable(bow_tie);
 
   std::vector<Point> star;
   for (int k = 0; k < 5; ++k) star.emplace_back(std::cos(k * 0.8 * M_PI), std::sin(k * 0.8 * M_PI), 0);
   const Scene pentagram = repair(one_polygon(star));
-  EXPECT_EQ(kinds(pentagram).front(), ProblemKind::self_intersecting);
+  EXPECT_EQ(kinds(pentagram).front(), DiagnosticCode::self_intersecting);
   EXPECT_GT(pentagram.polygons.size(), 1U);
   expect_meshable(pentagram);
 }
@@ -271,14 +268,14 @@ TEST(Repair, CountsTurnedFacesAndBranchedEdges) {
   Scene scene = numbered(cube_room(0.5, 0));
   std::reverse(scene.polygons[4].corners.begin(), scene.polygons[4].corners.end());
   const Scene turned = repair(scene);
-  ASSERT_EQ(kinds(turned), Kinds{ProblemKind::turned_faces});
-  EXPECT_EQ(turned.problems[0].faces.at(0).line, 5U);
+  ASSERT_EQ(kinds(turned), Kinds{DiagnosticCode::turned_faces});
+  EXPECT_EQ(turned.diagnostics[0].faces.at(0).line, 5U);
 
   const Scene fin =
       repair(numbered(with_quad(cube_room(0.5, 0), {Point(0, 0, 1), Point(1, 0, 1), Point(1, 0, 2), Point(0, 0, 2)})));
-  ASSERT_EQ(kinds(fin), Kinds{ProblemKind::non_manifold_edges});
-  EXPECT_EQ(fin.problems[0].count, 1U);
-  EXPECT_EQ(fin.problems[0].faces.size(), 3U);
+  ASSERT_EQ(kinds(fin), Kinds{DiagnosticCode::non_manifold_edges});
+  EXPECT_EQ(fin.diagnostics[0].count, 1U);
+  EXPECT_EQ(fin.diagnostics[0].faces.size(), 3U);
 }
 
 // A polygon with holes, each joined to the outline by a seam: area and mesh are those of the outline less the holes.
@@ -304,7 +301,7 @@ TEST(Repair, SeamsToHolesLeaveHoles) {
       auto rotated = corners;
       std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(start), rotated.end());
       const Scene repaired = repair(one_polygon(rotated));
-      EXPECT_TRUE(repaired.problems.empty());
+      EXPECT_TRUE(repaired.diagnostics.empty());
       ASSERT_EQ(repaired.polygons.size(), 1U);
       EXPECT_DOUBLE_EQ(area(repaired), expected);
       expect_meshable(repaired);
@@ -319,7 +316,7 @@ TEST(Repair, DoesNotDependOnSizeAndPlace) {
   scene = with_polygon(std::move(scene), {Point(0, 0, 8), Point(1, 0, 8), Point(2, 0, 8)});
   scene = numbered(std::move(scene));
   const Scene here = repair(scene);
-  ASSERT_GE(here.problems.size(), 4U);
+  ASSERT_GE(here.diagnostics.size(), 4U);
   const Eigen::Affine3d turn(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   const Eigen::Affine3d far(Eigen::Translation3d(1e6, -1e6, 1e6));
   const Eigen::Affine3d small(Eigen::UniformScaling<double>(1e-3));
@@ -327,7 +324,8 @@ TEST(Repair, DoesNotDependOnSizeAndPlace) {
   for (const Eigen::Affine3d& motion : {turn, far, small, large}) {
     const Scene there = repair(moved(scene, motion));
     EXPECT_EQ(kinds(there), kinds(here));
-    for (std::size_t k = 0; k < here.problems.size(); ++k) EXPECT_EQ(there.problems[k].count, here.problems[k].count);
+    for (std::size_t k = 0; k < here.diagnostics.size(); ++k)
+      EXPECT_EQ(there.diagnostics[k].count, here.diagnostics[k].count);
     EXPECT_EQ(there.polygons.size(), here.polygons.size());
     EXPECT_EQ(there.vertices.size(), here.vertices.size());
   }
@@ -342,19 +340,6 @@ TEST(Repair, RefusesWhatIsNoGeometry) {
     wrong.vertices[3].y() = bad;
     EXPECT_THROW(repair(wrong), InputError);
   }
-}
-
-TEST(WorstFirst, SortsByKindAndKeepsTheOrderWithinOne) {
-  const std::vector<Problem> sorted = worst_first({{ProblemKind::welded_vertices, 1, "a", {}},
-                                                   {ProblemKind::non_planar, 1, "b", {}},
-                                                   {ProblemKind::no_lamp, 1, "c", {}},
-                                                   {ProblemKind::non_planar, 1, "d", {}}});
-  std::string order;
-  for (const Problem& problem : sorted) order += problem.what;
-  EXPECT_EQ(order, "cbda");
-  EXPECT_EQ(severity_of(ProblemKind::no_lamp), Severity::warning);
-  EXPECT_EQ(severity_of(ProblemKind::non_planar), Severity::warning);
-  EXPECT_EQ(severity_of(ProblemKind::welded_vertices), Severity::remark);
 }
 
 // Most faces are so small beside the largest that a ray of one cannot be told from that of another: the small ones are

@@ -1,5 +1,7 @@
 #include "patchlight/scene/sides.h"
 
+#include "support/diagnostics_of.h"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -97,7 +99,7 @@ TEST(KeptSides, FrontAndBothDoNotLookAtTheScene) {
   const KeptSides both = kept_sides(scene, Sides::both);
   expect_all(both, 0, 7, both_sides);
   EXPECT_TRUE(both.emit_from_back);
-  EXPECT_EQ(both.notes.size(), 1U) << "the doubled flux is reported";
+  EXPECT_EQ(test::codes_of(both.notes), std::vector{DiagnosticCode::both_sides}) << "the doubled flux is reported";
 }
 
 TEST(KeptSides, ASolidWithoutALampKeepsItsOuterSides) {
@@ -134,8 +136,7 @@ TEST(KeptSides, ASideWithNothingBeforeItIsDark) {
 TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   const KeptSides outward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward), {0, 0, 0.2}));
   expect_all(outward, 0, 6, back_only);
-  EXPECT_TRUE(std::any_of(outward.notes.begin(), outward.notes.end(),
-                          [](const std::string& note) { return note.find("outward normals") != std::string::npos; }));
+  EXPECT_TRUE(test::has(outward.notes, DiagnosticCode::outward_normals));
   const KeptSides inward = automatic(with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2}));
   expect_all(inward, 0, 6, front_only);
 }
@@ -147,10 +148,9 @@ TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
   const auto told = [&](const Point& position) {
     scene.luminaires = {
         {.name = "bulb", .place = "a.toml:7", .position = position, .light = PointLight{Spectrum::Ones(1)}}};
-    const std::vector<std::string> notes = kept_sides(scene, Sides::automatic).notes;
-    const auto found = std::find_if(notes.begin(), notes.end(),
-                                    [](const std::string& note) { return note.rfind("no luminaire stands", 0) == 0; });
-    return found == notes.end() ? std::string() : *found;
+    for (const Diagnostic& found : kept_sides(scene, Sides::automatic).notes)
+      if (found.code == DiagnosticCode::misplaced_luminaire) return found.text;
+    return std::string();
   };
   EXPECT_EQ(told({0, 0, ceiling + 0.2}),
             "no luminaire stands in the room: 'bulb' (a.toml:7) is the nearest, 0.2 m outside");
@@ -165,9 +165,7 @@ TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
 // A room with a lamp under the sky: nobody is left to wonder why daylight changes nothing in it.
 TEST(KeptSides, SaysWhereNoDaylightGetsIn) {
   const auto says_so = [](const Scene& scene) {
-    const KeptSides kept = automatic(scene);
-    return std::any_of(kept.notes.begin(), kept.notes.end(),
-                       [](const std::string& note) { return note.find("no daylight gets into") == 0; });
+    return test::has(automatic(scene).notes, DiagnosticCode::sealed_solid);
   };
   Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward), {0, 0, 0.2});
   EXPECT_FALSE(says_so(scene)) << "there is none";

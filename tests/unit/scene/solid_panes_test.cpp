@@ -1,6 +1,7 @@
 #include "scene/solid_panes.h"
 
 #include "scene/repair.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -35,8 +36,7 @@ TEST(SolidPanes, CountOnce) {
       EXPECT_FALSE(scene.materials[scene.polygons[0].material].second_face);
       EXPECT_TRUE(scene.materials[scene.polygons[1].material].second_face);
       for (PolygonIndex p = 2; p < 6; ++p) EXPECT_EQ(through(scene, p)[0], 0.8) << "the rim is farther apart";
-      ASSERT_EQ(scene.notes.size(), 1U);
-      EXPECT_NE(scene.notes[0].find("1 pane of two parallel faces"), std::string::npos) << scene.notes[0];
+      EXPECT_EQ(count_of(scene.diagnostics, DiagnosticCode::read_as_pane), 1);
     }
   }
 }
@@ -44,7 +44,7 @@ TEST(SolidPanes, CountOnce) {
 TEST(SolidPanes, AreThinOfOneMaterialAndFaceOutward) {
   const auto expect_as_it_was = [](const Scene& scene) {
     const Scene found = with_solid_panes_as_one(scene);
-    EXPECT_TRUE(found.notes.empty());
+    EXPECT_TRUE(found.diagnostics.empty());
     EXPECT_EQ(found.materials.size(), scene.materials.size());
     for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
       EXPECT_EQ(found.polygons[p].material, scene.polygons[p].material);

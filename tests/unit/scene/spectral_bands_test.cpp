@@ -108,9 +108,11 @@ TEST(WavelengthBands, TellOfSharesThatAreMoreThanOneInABand) {
   const Scene scene = in_wavelength_bands(std::move(sheet), equal_edges(40));
   const Material& material = scene.materials[0];
   EXPECT_LE((material.reflectance + material.diffuse_transmittance).maxCoeff(), 1);
-  ASSERT_EQ(scene.notes.size(), 1U);
-  EXPECT_NE(scene.notes[0].find("material 'wall'"), std::string::npos) << scene.notes[0];
-  EXPECT_NE(scene.notes[0].find(" nm; there it scatters 0.6 instead of "), std::string::npos) << scene.notes[0];
+  ASSERT_EQ(scene.diagnostics.size(), 1U);
+  EXPECT_EQ(scene.diagnostics[0].code, DiagnosticCode::lowered_reflectance);
+  const std::string& note = scene.diagnostics[0].text;
+  EXPECT_NE(note.find("material 'wall'"), std::string::npos) << note;
+  EXPECT_NE(note.find(" nm; there it scatters 0.6 instead of "), std::string::npos) << note;
 }
 
 TEST(Rgb, OfSpectraIsTheirColourAndLuminance) {

@@ -1,22 +1,22 @@
-#include "scene/problem_face.h"
-
-#include <sstream>
+#include "scene/model_face.h"
 
 namespace patchlight {
 
-ProblemFace problem_face(const Scene& scene, const Polygon& polygon) {
-  ProblemFace face{.corners = {}, .file = polygon.file, .line = polygon.line, .face = polygon.face};
+ModelFace model_face(const Scene& scene, const Polygon& polygon) {
+  ModelFace face{.corners = {}, .file = polygon.file, .line = polygon.line, .face = polygon.face};
   for (const std::uint32_t corner : polygon.corners) face.corners.push_back(scene.vertices[corner]);
   return face;
 }
 
-double area_of(const std::vector<ProblemFace>& faces) {
+double area_of(const std::vector<ModelFace>& faces) {
   double area = 0;
-  for (const ProblemFace& face : faces) area += area_vector(face.corners).norm();
+  for (const ModelFace& face : faces) area += area_vector(face.corners).norm();
   return area;
 }
 
-bool is_loss(ProblemKind kind) { return kind == ProblemKind::left_out || kind == ProblemKind::little_left_out; }
+bool is_loss(DiagnosticCode code) {
+  return code == DiagnosticCode::left_out || code == DiagnosticCode::little_left_out;
+}
 
 std::set<std::string> objects_with_faces(const Scene& scene) {
   std::vector<std::uint8_t> has_polygon(scene.groups.size(), 0);
@@ -34,14 +34,12 @@ std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-std::string listed(const Scene& scene, const std::vector<ProblemFace>& faces) {
+std::string listed(const Scene& scene, const std::vector<ModelFace>& faces) {
   Polygon first;
   first.file = faces.front().file;
   first.line = faces.front().line;
   first.group = static_cast<std::uint32_t>(scene.groups.size());  // unknown
-  std::ostringstream text;
-  text << counted(faces.size(), "face") << (faces.size() == 1 ? " (" : " (first at ") << place_of(scene, first) << ')';
-  return text.str();
+  return counted(faces.size(), "face") + (faces.size() == 1 ? " (" : " (first at ") + place_of(scene, first) + ")";
 }
 
 }  // namespace patchlight

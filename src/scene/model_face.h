@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/scene/problem.h"
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/scene/scene.h"
 
 #include <set>
@@ -9,13 +9,13 @@
 
 namespace patchlight {
 
-ProblemFace problem_face(const Scene& scene, const Polygon& polygon);
+ModelFace model_face(const Scene& scene, const Polygon& polygon);
 
 /// The area of faces, m^2; faces without known corners count 0.
-double area_of(const std::vector<ProblemFace>& faces);
+double area_of(const std::vector<ModelFace>& faces);
 
 /// True for things of a file that the scene lacks: left_out and little_left_out.
-bool is_loss(ProblemKind kind);
+bool is_loss(DiagnosticCode code);
 
 /// The names of objects that have polygons.
 std::set<std::string> objects_with_faces(const Scene& scene);
@@ -24,6 +24,6 @@ std::set<std::string> objects_with_faces(const Scene& scene);
 std::string counted(std::size_t count, const std::string& noun);
 
 /// "3 faces (first at room.obj:12)".
-std::string listed(const Scene& scene, const std::vector<ProblemFace>& faces);
+std::string listed(const Scene& scene, const std::vector<ModelFace>& faces);
 
 }  // namespace patchlight

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "patchlight/scene/scene.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace patchlight::test {
+
+inline std::ptrdiff_t count_of(const Diagnostics& diagnostics, DiagnosticCode code) {
+  return std::count_if(diagnostics.begin(), diagnostics.end(),
+                       [code](const Diagnostic& found) { return found.code == code; });
+}
+
+inline bool has(const Diagnostics& diagnostics, DiagnosticCode code) { return count_of(diagnostics, code) > 0; }
+
+inline std::vector<DiagnosticCode> codes_of(const Diagnostics& diagnostics) {
+  std::vector<DiagnosticCode> codes;
+  for (const Diagnostic& found : diagnostics) codes.push_back(found.code);
+  return codes;
+}
+
+/// The diagnostics of a scene that are notes, and the others.
+inline Diagnostics notes_of(const Scene& scene) { return chosen(scene.diagnostics, is_note); }
+inline Diagnostics problems_of(const Scene& scene) {
+  return chosen(scene.diagnostics, [](DiagnosticCode code) { return !is_note(code); });
+}
+
+}  // namespace patchlight::test
