@@ -1,7 +1,7 @@
 #include "accuracy/errors_within_parents.h"
 
 #include "accuracy/refinement.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 
 #include <cmath>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include "base/conjugate_directions.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "solve/scattering.h"
 #include "transport/random_errors.h"
 

@@ -1,7 +1,7 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "accuracy/errors.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 
 #include <cmath>

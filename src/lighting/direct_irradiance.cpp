@@ -6,7 +6,7 @@
 #include "lighting/receivers.h"
 #include "lighting/sampled_sources.h"
 #include "lighting/shifted_points.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/small_patches.h"
 
 #include <algorithm>

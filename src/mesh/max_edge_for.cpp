@@ -1,7 +1,6 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
-#include "mesh/cut_outlines.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"

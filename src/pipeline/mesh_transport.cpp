@@ -5,7 +5,7 @@
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "form_factor/patch_keys.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"

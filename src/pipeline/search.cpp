@@ -5,7 +5,6 @@
 #include "base/doublings.h"
 #include "base/parallel.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/refine.h"
 #include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"

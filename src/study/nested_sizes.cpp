@@ -2,8 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "mesh/nested_mesh.h"
 #include "mesh/patch_lookup.h"
-#include "mesh/refine.h"
 #include "pipeline/first_mesh.h"
 #include "plan/memory.h"
 

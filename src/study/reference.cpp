@@ -1,7 +1,7 @@
 #include "study/reference.h"
 
 #include "base/vectors.h"
-#include "mesh/average.h"
+#include "mesh/interpolate.h"
 #include "solve/scattering.h"
 
 #include <algorithm>
