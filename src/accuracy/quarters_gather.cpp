@@ -3,12 +3,11 @@
 #include "accuracy/choice_of_lamps.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "form_factor/monte_carlo.h"
+#include "form_factor/pair_samples.h"
 #include "form_factor/patch_keys.h"
 #include "form_factor/point_polygon.h"
 #include "mesh/patch_lookup.h"
 #include "mesh/small_patches.h"
-#include "transport/patch_frame.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

@@ -12,8 +12,7 @@
 #include "output/file/write_bytes.h"
 #include "output/mesh/write_mesh.h"
 #include "plan/planned_scene.h"
-#include "transport/ray_exchange.h"
-#include "transport/rows_by_class.h"
+#include "transport/ray_transport.h"
 
 #include <algorithm>
 #include <array>

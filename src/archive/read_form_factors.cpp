@@ -9,7 +9,7 @@
 #include "files/reason.h"
 #include "files/regular_file.h"
 #include "transport/closure.h"
-#include "transport/narrow.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include "patchlight/scene/scene.h"
 
 #include "transport/ray_rows.h"
-#include "transport/row_blocks.h"
 
 #include <filesystem>
 #include <span>

@@ -1,7 +1,7 @@
 #include "archive/group_factors.h"
 #include "output/file/write_bytes.h"
 #include "output/report/csv_cell.h"
-#include "transport/group_exchange.h"
+#include "transport/merged.h"
 
 #include <cstdint>
 #include <iomanip>

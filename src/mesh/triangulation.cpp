@@ -1,5 +1,3 @@
-// Lines as edges of a triangulation.
-// The patches that a triangulation gives.
 #include "mesh/triangulation.h"
 
 #include "scene/triangulate.h"
@@ -239,6 +237,8 @@ void Triangulation::split_long_edges() {
   }
 }
 
+// Lines as edges of a triangulation.
+
 namespace {
 
 // A place as a key: ends of lines have the same bits as corners of the outline and ends of other lines.
@@ -395,6 +395,8 @@ void Triangulation::insert_lines(std::span<const std::vector<FlatPoint>> lines) 
     }
   }
 }
+
+// The patches that a triangulation gives.
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include "pipeline/problem_of.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
-#include "transport/bright_patches.h"
-#include "transport/row_blocks.h"
+#include "transport/ray_rows.h"
+#include "transport/row_tracer.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

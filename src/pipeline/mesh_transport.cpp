@@ -16,10 +16,9 @@
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
-#include "transport/on_demand.h"
-#include "transport/ray_rate.h"
+#include "transport/pair_sampler.h"
+#include "transport/ray_rows.h"
 #include "transport/smoothing.h"
-#include "transport/weighed_rows.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

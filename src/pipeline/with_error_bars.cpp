@@ -22,7 +22,6 @@
 #include "transport/closure.h"
 #include "transport/dense.h"
 #include "transport/merged.h"
-#include "transport/on_demand.h"
 
 #include <algorithm>
 #include <array>

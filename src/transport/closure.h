@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/base/progress.h"
 #include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
@@ -7,10 +8,24 @@
 #include "patchlight/transport/sampling_error.h"
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace patchlight {
+
+/// A row of form factors whose sum is off.
+struct RowDefect {
+  PatchIndex patch = 0;
+  double row_sum = 0;   ///< sum_j F_ij
+  double expected = 0;  ///< what is seen of other patches: 1 - lost
+};
+
+/// The `count` rows with the largest defect |row_sum - expected| times the patch's area, worst first; of equals the
+/// first. Fewer where there are fewer rows, none without row sums. `area` in m^2. O(size log count).
+std::vector<RowDefect> worst_rows(const Eigen::VectorXd& row_sum, const LostShare& lost, const Eigen::VectorXd& area,
+                                  std::size_t count);
 
 /// How ClosedExchangeAreas::method begins where row sums were cut.
 inline constexpr std::string_view cut_row_sums = "row sums cut at 1 plus three standard errors";

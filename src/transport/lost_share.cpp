@@ -5,7 +5,6 @@
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "mesh/small_patches.h"
-#include "transport/patch_frame.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

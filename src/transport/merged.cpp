@@ -3,13 +3,25 @@
 #include "base/parallel.h"
 #include "mesh/nested_mesh.h"
 #include "transport/closure.h"
-#include "transport/narrow.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 namespace patchlight {
+
+Eigen::MatrixXd exchange_between_groups(const ExchangeAreas& S, std::span<const std::uint32_t> group_of,
+                                        std::uint32_t groups) {
+  assert(group_of.size() == S.size());
+  Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(groups, groups);
+  for (PatchIndex i = 0; i < S.size(); ++i) {
+    for (PatchIndex j = i; j < S.size(); ++j) upper(group_of[i], group_of[j]) += static_cast<double>(S.at(i, j));
+  }
+  // Each pair was met once; the diagonal of S is zero.
+  return upper + upper.transpose();
+}
+
 namespace {
 
 // Partial sums are kept per stripe of parents; their number is fixed, so that the bits do not depend on the threads.

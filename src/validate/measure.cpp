@@ -3,7 +3,7 @@
 #include "form_factor/patch_shape.h"
 #include "mesh/mesher.h"
 #include "scene/repair.h"
-#include "transport/group_exchange.h"
+#include "transport/merged.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

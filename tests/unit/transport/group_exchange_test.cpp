@@ -1,4 +1,4 @@
-#include "transport/group_exchange.h"
+#include "transport/merged.h"
 
 #include <gtest/gtest.h>
 #include <vector>
