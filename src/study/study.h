@@ -2,11 +2,19 @@
 
 #include "patchlight/simulate.h"
 
+#include "study/reference.h"
+
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace patchlight {
+
+/// The setting with its errors against the reference. Its own error is that of the patch means, too.
+StudySetting judged(const Simulation& simulation, const Reference& reference);
+
+/// The setting with an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
+StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own);
 
 /// One way of solving a scene: what it costs and how good it is. Errors are shares of the reflected light, NaN where
 /// they are not known.

@@ -1,7 +1,7 @@
 #include "patchlight/views/views.h"
 
 #include "render/ambient_occlusion.h"
-#include "render/smooth.h"
+#include "render/render.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
