@@ -1,13 +1,96 @@
 #include "accuracy/spaces.h"
 
 #include "base/parallel.h"
+#include "base/sampling.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
+namespace {
+
+constexpr std::uint32_t reflections = 4;
+
+// Walks from each patch. Fewer where there are very many patches: only those at a space's border are then less sure.
+constexpr std::uint32_t usual_walks = 16;
+constexpr std::uint32_t few_walks = 4;
+constexpr PatchIndex many_patches = 50000;
+
+constexpr std::uint32_t purpose = 0x656e636c;
+
+std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t walks, std::uint32_t key) {
+  const auto samples = scrambled_sobol(walks, key);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vector direction = cosine_direction(places[k].normal, samples[k][0], samples[k][1]);
+    rays.push_back({places[k].point, direction, places[k].polygon});
+  }
+  return rays;
+}
+
+// A space that is much lower than its faces are wide is a gap, not a room, e.g. below a building that does not touch
+// the ground: most rays end nearer than this share of the size of the face.
+constexpr double least_height = 0.01;
+
+bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
+  const double limit = least_height * std::sqrt(face_area);
+  const auto count = std::count_if(hits.begin(), hits.end(),
+                                   [&](const std::optional<Hit>& hit) { return hit && hit->distance < limit; });
+  return 2 * static_cast<std::size_t>(count) > hits.size();
+}
+
+// True when fewer than half of the walks from the place with this key leave the scene, and the space before it is no
+// gap before a face of this area, m^2.
+bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& from, std::size_t key, double face_area,
+                 std::uint32_t walks) {
+  std::vector<FacingPlace> places(walks, from);
+  for (std::uint32_t k = 0; k < reflections; ++k) {
+    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, key, k})));
+    if (k == 0 && is_gap(hits, face_area)) return false;
+    std::vector<FacingPlace> next;
+    for (const std::optional<Hit>& hit : hits) {
+      if (!hit) continue;
+      const Vector front = front_normal(scene, hit->polygon);
+      next.push_back({hit->point, hit->side == Side::front ? front : Vector(-front), hit->polygon});
+    }
+    places = std::move(next);
+    if (2 * places.size() <= walks) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
+  const std::uint32_t walks = mesh.size() > many_patches ? few_walks : usual_walks;
+  std::vector<double> face_area;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    face_area.push_back(area_vector(corner_points(scene, p)).norm());
+  Eigen::VectorXd enclosed(mesh.size());
+  parallel_for(mesh.size(), [&](std::size_t k) {
+    const auto patch = static_cast<PatchIndex>(k);
+    const PolygonIndex polygon = mesh.polygon[patch];
+    const FacingPlace place{mesh.centroid[patch], mesh.normal[patch], polygon};
+    enclosed[patch] = is_enclosed(scene, faces, place, k, face_area[polygon], walks) ? 1 : 0;
+  });
+  return enclosed;
+}
+
+std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& faces,
+                                          std::span<const FacingPlace> places) {
+  std::vector<std::uint8_t> enclosed(places.size(), 0);
+  parallel_for(places.size(),
+               [&](std::size_t k) { enclosed[k] = is_enclosed(scene, faces, places[k], k, 0, usual_walks) ? 1 : 0; });
+  return enclosed;
+}
+
 namespace {
 
 // How far before a patch its space is looked at, as a share of the shell's extent.

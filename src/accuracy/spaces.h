@@ -3,10 +3,31 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/scene.h"
 
+#include "visibility/occluder.h"
+
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
+
+/// 1 for each patch of a room, e.g. one with windows, else 0: facades, a court, the ground under a table in the open, a
+/// gap below a building. In a room light leaves the scene with a probability below one half in four diffuse
+/// reflections, whatever the reflectance; clear faces count as closed. A gap is lower than about a hundredth of the
+/// width of its faces. `faces` is an occluder whose rays meet all polygons. Costs at most 64 rays per patch.
+Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh);
+
+/// A place and the unit direction that it faces, on a polygon or in the air.
+struct FacingPlace {
+  Point point;
+  Vector normal;
+  PolygonIndex polygon = no_polygon;
+};
+
+/// 1 for each place in a room, by the same rule as patches, but for gaps; else 0.
+std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& faces,
+                                          std::span<const FacingPlace> places);
 
 /// Which closed shells divide a scene into inside and outside.
 enum class Dividing : std::uint8_t { all, with_openings };

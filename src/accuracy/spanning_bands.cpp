@@ -1,9 +1,12 @@
 #include "accuracy/spanning_bands.h"
 
+#include "solve/scattering.h"
+
 #include <Eigen/Cholesky>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -76,6 +79,18 @@ SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area
   spanning.weights = of_chosen.llt().solve(with_all) * norm.asDiagonal();
   for (Eigen::Index k = 0; k < count; ++k) spanning.weights.row(k) /= norm[spanning.bands[static_cast<std::size_t>(k)]];
   return spanning;
+}
+
+InNeededBands in_needed_bands(const SolvedProblem& solved) {
+  const RadiosityProblem& problem = solved.problem;
+  SolvedBands bands =
+      solved_bands({problem.scattering, source_radiosity(problem), problem.area, problem.direct_irradiance});
+  RadiosityProblem needed{of_bands(problem.scattering, bands.solved), reduced(problem.exitance, bands), problem.area,
+                          reduced(problem.direct_irradiance, bands)};
+  Solution solution;
+  solution.radiosity = reduced(solved.solution.radiosity, bands);
+  solution.irradiance = reduced(solved.solution.irradiance, bands);
+  return {std::move(bands), std::move(needed), std::move(solution)};
 }
 
 }  // namespace patchlight

@@ -2,6 +2,9 @@
 
 #include "patchlight/base/field.h"
 
+#include "accuracy/errors.h"
+#include "solve/solved_bands.h"
+
 #include <Eigen/Core>
 #include <vector>
 
@@ -24,5 +27,17 @@ struct SpanningBands {
 /// Enough bands that every one is a combination of theirs but for `tolerance` of its norm, sqrt(sum_i A_i x_i^2). Up to
 /// three bands stay as they are. Bands in which all is 0 take none. The same bits for any number of threads.
 SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area, double tolerance);
+
+/// A solved problem in the bands that solved_bands() names: what is linear in the light is the same for the others, but
+/// for a factor.
+struct InNeededBands {
+  SolvedBands bands;
+  RadiosityProblem problem;
+  Solution solution;  ///< without directs, ambient and error
+
+  SolvedProblem solved() const { return {problem, solution}; }
+};
+
+InNeededBands in_needed_bands(const SolvedProblem& solved);
 
 }  // namespace patchlight

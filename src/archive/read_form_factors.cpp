@@ -7,7 +7,6 @@
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "files/reason.h"
-#include "files/regular_file.h"
 #include "transport/closure.h"
 #include "transport/tiles.h"
 

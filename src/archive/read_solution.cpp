@@ -7,7 +7,7 @@
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 #include "scene/extent.h"
-#include "visibility/covered_places.h"
+#include "visibility/flat_polygon.h"
 #include "visibility/tracing.h"
 
 #include <algorithm>

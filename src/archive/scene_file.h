@@ -3,8 +3,6 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
-#include "archive/json_values.h"
-
 #include <filesystem>
 
 namespace patchlight {

@@ -1,5 +1,5 @@
+#include "base/near_match.h"
 #include "base/rounded.h"
-#include "base/shell_word.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/interrupt.h"
@@ -8,7 +8,7 @@
 #include "cli/picture.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_survey.h"
-#include "output/vtk/write_problems.h"
+#include "output/vtk/vtk_polygons.h"
 #include "plan/survey.h"
 #include "scene/sensor_grid.h"
 

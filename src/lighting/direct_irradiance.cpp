@@ -1,6 +1,5 @@
 #include "lighting/direct_irradiance.h"
 
-#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/receivers.h"

@@ -1,14 +1,16 @@
 #include "page/write_page.h"
 
+#include "patchlight/gather/readings.h"
+#include "patchlight/scene/scene.h"
+
 #include "base/rounded.h"
 #include "light/photometry.h"
-#include "output/file/write_bytes.h"
-#include "output/image/png_bytes.h"
-#include "output/plot/map_axes.h"
-#include "output/report/comparison_json.h"
-#include "output/report/json_array.h"
+#include "output/file/whole_file.h"
+#include "output/image/write_image.h"
+#include "output/plot/write_sensor_map.h"
 #include "output/report/report_json.h"
-#include "output/report/study_json.h"
+#include "output/report/write_comparison.h"
+#include "output/report/write_study.h"
 #include "page/drawn_faces.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
@@ -17,11 +19,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
+// The linker makes an object of two files, with these names in it.
 extern "C" {
 extern const char _binary_page_template_html_start[];
 extern const char _binary_page_template_html_end[];
@@ -30,8 +35,6 @@ extern const char _binary_page_three_js_end[];
 }
 
 namespace patchlight {
-
-// The linker makes an object of two files, with these names in it.
 
 namespace {
 

@@ -1,17 +1,12 @@
 #pragma once
 
-#include "patchlight/gather/readings.h"
 #include "patchlight/output/provenance.h"
 #include "patchlight/report/report.h"
-#include "patchlight/scene/scene.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
-#include <cstddef>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace patchlight {

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/doublings.h"
+#include "base/sampling.h"
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"

@@ -1,7 +1,6 @@
 #include "pipeline/mesh_transport.h"
 
 #include "accuracy/errors.h"
-#include "base/doublings.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "form_factor/patch_keys.h"

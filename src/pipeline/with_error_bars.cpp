@@ -3,10 +3,9 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/errors_within_parents.h"
 #include "accuracy/interest.h"
-#include "accuracy/needed_bands.h"
 #include "accuracy/refinement.h"
+#include "accuracy/spanning_bands.h"
 #include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"

@@ -1,8 +1,8 @@
 #include "plan/goal.h"
 
-#include "accuracy/enclosed.h"
 #include "accuracy/errors.h"
 #include "accuracy/interest.h"
+#include "accuracy/spaces.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/mesher.h"

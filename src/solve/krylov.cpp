@@ -1,6 +1,5 @@
 #include "solve/krylov.h"
 
-#include "base/conjugate_directions.h"
 #include "base/vectors.h"
 #include "solve/scattering.h"
 

@@ -2,8 +2,8 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/conjugate_directions.h"
 #include "base/parallel.h"
+#include "base/vectors.h"
 #include "transport/tiles.h"
 
 #include <algorithm>

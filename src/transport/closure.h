@@ -2,7 +2,6 @@
 
 #include "patchlight/base/field.h"
 #include "patchlight/base/progress.h"
-#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/sampling_error.h"

@@ -1,6 +1,5 @@
 #include "patchlight/transport/lost_share.h"
 
-#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"

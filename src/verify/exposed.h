@@ -1,7 +1,7 @@
 #pragma once
 
+#include "verify/path_scene.h"
 #include "verify/path_tracer.h"
-#include "verify/surfaces.h"
 #include "visibility/occluder.h"
 
 #include <cstdint>

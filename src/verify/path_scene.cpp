@@ -1,10 +1,108 @@
 #include "verify/path_scene.h"
 
+#include "light/texture.h"
 #include "scene/coverings.h"
+#include "scene/transmittance.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 namespace patchlight {
+namespace {
+
+// What clear materials are, each once.
+struct Panes {
+  std::vector<std::vector<Pane>> panes;
+  std::vector<Spectrum> held;
+};
+
+Panes panes_of_materials(const Scene& scene, Reflections reflections) {
+  Panes all;
+  for (const Material& material : scene.materials) {
+    all.panes.push_back(panes_of(material));
+    all.held.push_back(hemispherical_held(all.panes.back(), reflections == Reflections::followed));
+  }
+  return all;
+}
+
+Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<PolygonIndex, Side>& of,
+                   const KeptSides& kept, Reflections reflections) {
+  const auto [index, side] = of;
+  const Polygon& polygon = scene.polygons[index];
+  const MaterialIndex of_material = material_on(polygon, side);
+  const Material& material = scene.materials[of_material];
+  const bool is_front = side == Side::front;
+  Surface surface;
+  surface.kept = (is_front ? kept.front : kept.back)[index] != 0;
+  surface.normal = is_front ? front_normal(scene, index) : Vector(-front_normal(scene, index));
+  surface.reflectance = material.reflectance;
+  if (const TextureMap* map = texture_map_on(scene, polygon, side)) {
+    surface.texture = material.texture;
+    surface.texture_map = *map;
+  }
+  surface.panes = panes.panes[of_material];
+  surface.held = panes.held[of_material];
+  if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
+  surface.reflections = reflections;
+  surface.is_clear = is_opening(scene, index);
+  surface.is_specular = surface.is_clear || is_mirror(scene, index, Side::front) || is_mirror(scene, index, Side::back);
+  const bool is_mirrored = reflections == Reflections::followed && !surface.is_clear && is_mirror(scene, index, side);
+  surface.mirrored =
+      is_mirrored ? material.specular_reflectance : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  const bool both_kept = kept.front[index] != 0 && kept.back[index] != 0;
+  surface.scattered_through = both_kept && is_sheet(scene, index)
+                                  ? material.diffuse_transmittance
+                                  : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
+  surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
+  return surface;
+}
+
+}  // namespace
+
+Spectrum reflectance_at(const Surface& surface, const Point& point) {
+  if (!surface.texture) return surface.reflectance;
+  return reflectance_at(*surface.texture, surface.texture_map.linear * point + surface.texture_map.offset).min(1);
+}
+
+Spectrum transmittance(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Zero(surface.reflectance.size());
+  return transmittance(surface.panes, std::min(1.0, std::abs(cosine)));
+}
+
+Spectrum specular_reflectance(const Surface& surface, double cosine) {
+  if (surface.panes.empty() || surface.reflections == Reflections::kept) return surface.mirrored;
+  return specular_reflectance(surface.panes, std::min(1.0, std::abs(cosine)));
+}
+
+Spectrum relative_held(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
+  const Spectrum onward = transmittance(surface, cosine) + specular_reflectance(surface, cosine);
+  return onward.unaryExpr(&held_of) / surface.held;
+}
+
+namespace {
+
+Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections = Reflections::kept) {
+  const Panes panes = panes_of_materials(scene, reflections);
+  Surfaces surfaces;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back})
+      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept, reflections));
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+Eigen::Matrix3d frame_around(const Vector& normal) {
+  const Vector tangent = normal.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << tangent, normal.cross(tangent), normal;
+  return frame;
+}
 
 PathScene::PathScene(const Scene& scene, const KeptSides& sides, Reflections reflections)
     : tracing_(scene, find_coverings(scene, sides), Occluder::Blockers::all, reflections),

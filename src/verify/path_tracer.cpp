@@ -32,9 +32,6 @@
 #include "verify/exposed.h"
 #include "verify/mirror_images.h"
 #include "verify/path_scene.h"
-#include "verify/ray_walk.h"
-#include "verify/sky_radiance.h"
-#include "verify/surfaces.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
-#include "accuracy/errors_within_parents.h"
-
+#include "accuracy/errors.h"
 #include "base/vectors.h"
 #include "mesh/interpolate.h"
 #include "mesh/mesher.h"

@@ -1,6 +1,5 @@
-#include "output/mesh/write_glb.h"
-
 #include "glb_parts.h"
+#include "output/mesh/write_mesh.h"
 #include "render/render.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"

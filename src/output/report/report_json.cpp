@@ -1,12 +1,10 @@
+#include "output/report/report_json.h"
+
 #include "patchlight/output/write_result.h"
 #include "patchlight/report/report.h"
 
-#include "light/colour.h"
-#include "output/file/write_bytes.h"
-#include "output/report/accuracy_json.h"
-#include "output/report/decisions_part.h"
-#include "output/report/json_array.h"
-#include "output/report/report_json.h"
+#include "light/photometry.h"
+#include "output/file/whole_file.h"
 
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -14,8 +12,65 @@
 namespace patchlight {
 namespace {
 
-// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
 using Json = nlohmann::ordered_json;
+
+Json errors_of(const AccuracyStep& step) {
+  return {{"mesh", step.mesh},
+          {"form_factor", step.form_factor},
+          {"solver", step.solver},
+          {"total", step.total},
+          {"display", step.display}};
+}
+
+}  // namespace
+
+Json relative_errors(const std::vector<AccuracyStep>& steps) {
+  if (steps.empty()) return nullptr;
+  Json part = errors_of(steps.back());
+  part["inside"] = steps.back().inside;
+  return part;
+}
+
+Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {
+  if (spaces.empty()) return nullptr;
+  Json part;
+  for (const SpaceErrors& space : spaces) {
+    part[space.space] = errors_of(space.errors);
+    part[space.space]["patches"] = space.errors.patches;
+  }
+  return part;
+}
+
+namespace {
+
+// What was refined on the way to an accuracy: an entry for each mesh. Empty without error bars.
+Json accuracy_steps(const std::vector<AccuracyStep>& steps) {
+  Json parts = Json::array();
+  for (const AccuracyStep& step : steps) {
+    Json part = {{"patches", step.patches}, {"new_patches", step.new_patches}, {"samples", step.samples}};
+    part.update(errors_of(step));
+    part["seconds"] = step.seconds;
+    part["cpu_seconds"] = step.cpu_seconds;
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+}  // namespace
+
+nlohmann::ordered_json decisions_part(const std::vector<Decision>& decisions) {
+  nlohmann::ordered_json part = nlohmann::ordered_json::array();
+  for (const Decision& decision : decisions) {
+    part.push_back({{"effect", name_of(decision.effect)},
+                    {"simulate", decision.simulate},
+                    {"reason", decision.reason},
+                    {"saving", decision.saving},
+                    {"forced", decision.forced}});
+  }
+  return part;
+}
+
+namespace {
 
 // What sensors read, group by group, as a part of the report.
 Json sensors_part(const SensorFacts& sensors) {
