@@ -56,7 +56,7 @@ inline constexpr std::uint8_t seen_as_whole = 1;
 std::uint8_t as_point(double more);                         ///< `more` up to 4, in steps of 0.02
 std::optional<double> more_at_point(std::uint8_t seen_as);  ///< nothing where it is no point that counts
 
-/// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/quarters.h).
+/// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/small_patches.h).
 struct GatheredQuarters {
   int rays = 0;      ///< from each quarter
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2

@@ -12,7 +12,7 @@
 #include "output/mesh/write_mesh.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
-#include "transport/merged.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <array>

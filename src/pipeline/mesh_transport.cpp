@@ -14,7 +14,6 @@
 #include "solve/scattering.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
-#include "transport/merged.h"
 #include "transport/pair_sampler.h"
 #include "transport/ray_rows.h"
 #include "transport/smoothing.h"

@@ -3,9 +3,8 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/interest.h"
 #include "accuracy/refinement.h"
-#include "accuracy/spanning_bands.h"
+#include "accuracy/spaces.h"
 #include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
@@ -20,7 +19,6 @@
 #include "plan/goal.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
-#include "transport/merged.h"
 
 #include <algorithm>
 #include <array>

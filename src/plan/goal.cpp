@@ -1,7 +1,6 @@
 #include "plan/goal.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/interest.h"
 #include "accuracy/spaces.h"
 #include "base/sampling.h"
 #include "base/vectors.h"

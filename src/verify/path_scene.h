@@ -11,12 +11,15 @@
 #include "visibility/tracing.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
+
+struct PathReceiver;
 
 /// What one side of a polygon is to light.
 struct Surface {
@@ -93,5 +96,11 @@ class PathScene {
   std::size_t polygons_;
   Eigen::Index bands_;
 };
+
+/// For each point of a receiver 1 when it is exposed, 0 when it is covered: inside a solid, or against another face. A
+/// point is covered when another polygon lies over it in its plane, or when each of eight cosine-distributed rays and
+/// each of eight around its horizon meets a side that is not kept, or a face that lies against the receiver.
+std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const PathReceiver& receiver,
+                                  std::span<const Point> points, std::uint64_t seed);
 
 }  // namespace patchlight

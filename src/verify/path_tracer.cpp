@@ -29,7 +29,6 @@
 #include "scene/extent.h"
 #include "scene/triangulate.h"
 #include "verify/delta_sources.h"
-#include "verify/exposed.h"
 #include "verify/mirror_images.h"
 #include "verify/path_scene.h"
 

@@ -2,7 +2,6 @@
 
 #include "patchlight/simulate.h"
 
-#include "accuracy/interest.h"
 #include "mesh/mesher.h"
 #include "support/daylight_office.h"
 

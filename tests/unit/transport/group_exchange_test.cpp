@@ -1,4 +1,4 @@
-#include "transport/merged.h"
+#include "transport/closure.h"
 
 #include <gtest/gtest.h>
 #include <vector>
