@@ -179,8 +179,7 @@ PatchIndex patch_of(std::int32_t column) {
   return column == at_back ? SpecularStop::at_back : static_cast<PatchIndex>(column);
 }
 
-[[noreturn]] void refuse_stops(const std::filesystem::path& file, const std::string& found,
-                               const std::string& expected) {
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
   throw InputError(file.string(),
                    "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
@@ -191,7 +190,7 @@ void require_whole_rays(const std::filesystem::path& file, const RayRows& rows) 
     if (rows.first_stop[i] == rows.first_stop[i + 1]) continue;
     const RayStep last = rows.stops[rows.first_stop[i + 1] - 1].step();
     if (last != RayStep::ends && last != RayStep::kept)
-      refuse_stops(file, "a row whose last ray does not end", "rays that end in their row");
+      refuse(file, "a row whose last ray does not end", "rays that end in their row");
   }
 }
 
@@ -237,8 +236,8 @@ void write_classes(const std::filesystem::path& folder, const RowsByClass& by_cl
 void read_stops(const std::filesystem::path& folder, std::size_t half, const NumbersOf& there, RayRows& rows) {
   const auto begins = read_npy_numbers<std::int64_t>(file_of(folder, 0, half), there.patches + 1);
   if (begins.front() != 0 || !std::is_sorted(begins.begin(), begins.end()))
-    refuse_stops(file_of(folder, 0, half), "rows that begin before those above them",
-                 "0 first, then no number below the one before");
+    refuse(file_of(folder, 0, half), "rows that begin before those above them",
+           "0 first, then no number below the one before");
   rows.first_stop.assign(begins.begin(), begins.end());
   const std::size_t count = rows.first_stop.back();
   const auto columns = read_npy_numbers<std::int32_t>(file_of(folder, 1, half), count);
@@ -248,17 +247,17 @@ void read_stops(const std::filesystem::path& folder, std::size_t half, const Num
   rows.stops.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     if (columns[k] < at_back || columns[k] >= static_cast<std::int64_t>(there.patches))
-      refuse_stops(file_of(folder, 1, half), "column " + std::to_string(columns[k]),
-                   "one of " + std::to_string(there.patches) + " patches, from 0, or -1 or -2");
+      refuse(file_of(folder, 1, half), "column " + std::to_string(columns[k]),
+             "one of " + std::to_string(there.patches) + " patches, from 0, or -1 or -2");
     if (!(factors[k] >= 0 && factors[k] <= 1))
-      refuse_stops(file_of(folder, 2, half), "a form factor of " + std::to_string(factors[k]), "numbers from 0 to 1");
+      refuse(file_of(folder, 2, half), "a form factor of " + std::to_string(factors[k]), "numbers from 0 to 1");
     SpecularStop stop{patch_of(columns[k]), factors[k], static_cast<PolygonIndex>(polygons[k]),
                       std::bit_cast<std::uint32_t>(bits[k])};
     if (static_cast<std::uint32_t>(stop.step()) >= ray_steps)
-      refuse_stops(file_of(folder, 4, half), "step " + std::to_string(stop.bits & 7U), "one from 0 to 5");
+      refuse(file_of(folder, 4, half), "step " + std::to_string(stop.bits & 7U), "one from 0 to 5");
     if (!is_polygon(stop, there.polygons))
-      refuse_stops(file_of(folder, 3, half), "polygon " + std::to_string(polygons[k]),
-                   "one of " + std::to_string(there.polygons) + " polygons, from 0");
+      refuse(file_of(folder, 3, half), "polygon " + std::to_string(polygons[k]),
+             "one of " + std::to_string(there.polygons) + " polygons, from 0");
     rows.stops.push_back(stop);
   }
   require_whole_rays(file_of(folder, 4, half), rows);
@@ -270,7 +269,7 @@ std::vector<std::array<double, 2>> read_kinds(const std::filesystem::path& file)
   const auto numbers = read_npy_numbers<double>(file, count);
   const bool are_kinds = count > 0 && count % 2 == 0 &&
                          std::all_of(numbers.begin(), numbers.end(), [](double kind) { return std::isfinite(kind); });
-  if (!are_kinds) refuse_stops(file, "what is no pair of numbers for each polygon", "two numbers for each");
+  if (!are_kinds) refuse(file, "what is no pair of numbers for each polygon", "two numbers for each");
   std::vector<std::array<double, 2>> kinds;
   for (std::size_t k = 0; k < count; k += 2) kinds.push_back({numbers[k], numbers[k + 1]});
   return kinds;
@@ -407,11 +406,6 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   json["files"] = files_of_rows(is_specular);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
-  throw InputError(file.string(),
-                   "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
 
 // Where rows begin among all their entries. What is below 0 in the file is a very large number here.
