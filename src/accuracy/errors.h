@@ -36,18 +36,6 @@ struct SpanningBands {
 /// three bands stay as they are. Bands in which all is 0 take none. The same bits for any number of threads.
 SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area, double tolerance);
 
-/// A solved problem in the bands that solved_bands() names: what is linear in the light is the same for the others, but
-/// for a factor.
-struct InNeededBands {
-  SolvedBands bands;
-  RadiosityProblem problem;
-  Solution solution;  ///< without directs, ambient and error
-
-  SolvedProblem solved() const { return {problem, solution}; }
-};
-
-InNeededBands in_needed_bands(const SolvedProblem& solved);
-
 /// Such bars as one figure: ||R bar||_A / ||B - E||_A, the worst band; infinite where there is an error
 /// and no reflected light. Patches of weight 0 do not count.
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
@@ -59,6 +47,18 @@ struct SolvedProblem {
   const Solution& solution;
   bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
 };
+
+/// A solved problem in the bands that solved_bands() names: what is linear in the light is the same for the others, but
+/// for a factor.
+struct InNeededBands {
+  SolvedBands bands;
+  RadiosityProblem problem;
+  Solution solution;  ///< without directs, ambient and error
+
+  SolvedProblem solved() const { return {problem, solution}; }
+};
+
+InNeededBands in_needed_bands(const SolvedProblem& solved);
 
 /// What an error of the irradiance, W/m^2, comes to through all reflections: e = irradiance + F R e, to 5 % of what
 /// these add in each band. Of many bands some are solved, and others are combinations of them where these are as good.

@@ -285,6 +285,21 @@ SparseRows rows_of(const Groups& groups, std::size_t group, const SparseRows& am
   return rows;
 }
 
+// Of I - F rho. Costs some applications of it for each entry of a row.
+IncompleteFactors incomplete_factors(const SparseRows& form_factors, const Eigen::VectorXd& reflectance) {
+  SparseRows one(form_factors.rows(), form_factors.cols());
+  one.setIdentity();
+  Ilut ilut;
+  ilut.setDroptol(dropped_share);
+  ilut.setFillfactor(size_of_factors);
+  const Eigen::SparseMatrix<float, Eigen::RowMajor> matrix =
+      SparseRows(one - form_factors * reflectance.asDiagonal()).cast<float>();
+  ilut.compute(matrix);
+  IncompleteFactors found{ilut.factors(), {}};
+  for (int k = 0; k < static_cast<int>(matrix.rows()); ++k) found.order.push_back(ilut.row(k));
+  return found;
+}
+
 // Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
 // what is followed is. From (I - F rho) bounces >= 1/2 light is reflected at most twice as often as they say.
 std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const SparseRows& form_factors,
@@ -318,21 +333,6 @@ PocketSystem system_within(const SparseRows& form_factors, const FieldView& refl
 }
 
 namespace {
-
-// Of I - F rho. Costs some applications of it for each entry of a row.
-IncompleteFactors incomplete_factors(const SparseRows& form_factors, const Eigen::VectorXd& reflectance) {
-  SparseRows one(form_factors.rows(), form_factors.cols());
-  one.setIdentity();
-  Ilut ilut;
-  ilut.setDroptol(dropped_share);
-  ilut.setFillfactor(size_of_factors);
-  const Eigen::SparseMatrix<float, Eigen::RowMajor> matrix =
-      SparseRows(one - form_factors * reflectance.asDiagonal()).cast<float>();
-  ilut.compute(matrix);
-  IncompleteFactors found{ilut.factors(), {}};
-  for (int k = 0; k < static_cast<int>(matrix.rows()); ++k) found.order.push_back(ilut.row(k));
-  return found;
-}
 
 // F B: the irradiance of the patches by each other, of their radiosities in each band.
 Field arriving_within(const Pocket& pocket, const Field& radiosity) {
