@@ -33,7 +33,6 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"

@@ -1,19 +1,40 @@
 #pragma once
 
 #include "patchlight/accuracy/error_bars.h"
+#include "patchlight/base/field.h"
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
+#include "solve/solved_bands.h"
 #include "transport/ray_transport.h"
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace patchlight {
+
+/// A few bands of a field of which the others are combinations: the light of one lamp on some paints has far fewer
+/// degrees of freedom than bands.
+struct SpanningBands {
+  std::vector<Eigen::Index> bands;  ///< of the field
+  Eigen::MatrixXd weights;          ///< a column for each band of the field, a row for each of `bands`
+
+  /// True when every band is its own.
+  bool spans_all() const { return weights.rows() == weights.cols(); }
+  /// The columns of `bands`.
+  Field of(const FieldView& field) const;
+  /// All bands of what depends linearly on the field, from its values in `bands`.
+  Field all_bands(const FieldView& in_bands) const;
+};
+
+/// Enough bands that every one is a combination of theirs but for `tolerance` of its norm, sqrt(sum_i A_i x_i^2). Up to
+/// three bands stay as they are. Bands in which all is 0 take none. The same bits for any number of threads.
+SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area, double tolerance);
 
 /// Such bars as one figure: ||R bar||_A / ||B - E||_A, the worst band; infinite where there is an error
 /// and no reflected light. Patches of weight 0 do not count.
@@ -26,6 +47,18 @@ struct SolvedProblem {
   const Solution& solution;
   bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
 };
+
+/// A solved problem in the bands that solved_bands() names: what is linear in the light is the same for the others, but
+/// for a factor.
+struct InNeededBands {
+  SolvedBands bands;
+  RadiosityProblem problem;
+  Solution solution;  ///< without directs, ambient and error
+
+  SolvedProblem solved() const { return {problem, solution}; }
+};
+
+InNeededBands in_needed_bands(const SolvedProblem& solved);
 
 /// What an error of the irradiance, W/m^2, comes to through all reflections: e = irradiance + F R e, to 5 % of what
 /// these add in each band. Of many bands some are solved, and others are combinations of them where these are as good.
@@ -102,5 +135,14 @@ Field solver_errors(const SolvedProblem& solved);
 
 /// The problem for the parents of a mesh.
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem);
+
+/// What mesh_errors() tells of pairs, for rows of rays: F (B_h - B_2h), where B_2h = E + R P F B_2h is the solution on
+/// the parents, P the mean over each. B_h - B_2h = (1 - P) B + R e, where the mean irradiance of parents is off by
+/// e = P F (1 - P) B + P F R e: how the light of a parent's patches differs is known to the patches, and is in the
+/// error only as far as it gets to other parents. So the error of the irradiance of each patch, W/m^2, is F (1 - P) B +
+/// F R e by Richardson's extrapolation. Twice, F (1 - P) B by either half of the rays: the product has little bias by
+/// their noise, and its mean over the patches around has less of it; of both the larger, as in mesh_errors(). Zero
+/// where no parent is cut.
+Field errors_within_parents(const NestedMesh& mesh, const RayTransport& transport, const SolvedProblem& solved);
 
 }  // namespace patchlight

@@ -13,6 +13,31 @@
 
 namespace patchlight {
 
+/// Emitting patches, to be chosen by about what they send somewhere.
+struct ChoiceOfLamps {
+  std::vector<PatchIndex> lamps;  ///< in the order of the mesh
+  std::vector<double> before;     ///< what those before each send, W; one more entry at the end
+
+  struct Chosen {
+    PatchIndex lamp;
+    double probability;
+    double u;  ///< what the choice leaves of the number, in [0, 1]
+  };
+
+  /// That of a patch to be chosen; 0 where it is none of them. O(log(lamps)).
+  double probability_of(PatchIndex patch) const;
+
+  /// The one that belongs to this number of [0, 1). O(log(lamps)).
+  Chosen at(double u) const;
+};
+
+/// By what they send to a patch when nothing is in the way; all have some probability. O(lamps).
+ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
+                              const Field& exitance);
+
+/// By all that they send. O(lamps).
+ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance);
+
 class Occluder;
 
 /// A solution on patches, and what stands between them.
@@ -31,7 +56,7 @@ inline constexpr std::uint8_t seen_as_whole = 1;
 std::uint8_t as_point(double more);                         ///< `more` up to 4, in steps of 0.02
 std::optional<double> more_at_point(std::uint8_t seen_as);  ///< nothing where it is no point that counts
 
-/// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/quarters.h).
+/// What the rays of all quarters tell: patch i has the quarters 4 i to 4 i + 3 (mesh/small_patches.h).
 struct GatheredQuarters {
   int rays = 0;      ///< from each quarter
   Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2

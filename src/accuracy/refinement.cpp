@@ -3,11 +3,10 @@
 #include "patchlight/solve/solve.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/spanning_bands.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
-#include "transport/merged.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,102 @@
 #include "accuracy/spaces.h"
 
+#include "patchlight/base/error.h"
+
+#include "base/near_match.h"
 #include "base/parallel.h"
+#include "base/sampling.h"
+#include "base/vectors.h"
+#include "scene/room_body.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
+namespace {
+
+constexpr std::uint32_t reflections = 4;
+
+// Walks from each patch. Fewer where there are very many patches: only those at a space's border are then less sure.
+constexpr std::uint32_t usual_walks = 16;
+constexpr std::uint32_t few_walks = 4;
+constexpr PatchIndex many_patches = 50000;
+
+constexpr std::uint32_t purpose = 0x656e636c;
+
+std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t walks, std::uint32_t key) {
+  const auto samples = scrambled_sobol(walks, key);
+  std::vector<Ray> rays;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Vector direction = cosine_direction(places[k].normal, samples[k][0], samples[k][1]);
+    rays.push_back({places[k].point, direction, places[k].polygon});
+  }
+  return rays;
+}
+
+// A space that is much lower than its faces are wide is a gap, not a room, e.g. below a building that does not touch
+// the ground: most rays end nearer than this share of the size of the face.
+constexpr double least_height = 0.01;
+
+bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
+  const double limit = least_height * std::sqrt(face_area);
+  const auto count = std::count_if(hits.begin(), hits.end(),
+                                   [&](const std::optional<Hit>& hit) { return hit && hit->distance < limit; });
+  return 2 * static_cast<std::size_t>(count) > hits.size();
+}
+
+// True when fewer than half of the walks from the place with this key leave the scene, and the space before it is no
+// gap before a face of this area, m^2.
+bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& from, std::size_t key, double face_area,
+                 std::uint32_t walks) {
+  std::vector<FacingPlace> places(walks, from);
+  for (std::uint32_t k = 0; k < reflections; ++k) {
+    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, key, k})));
+    if (k == 0 && is_gap(hits, face_area)) return false;
+    std::vector<FacingPlace> next;
+    for (const std::optional<Hit>& hit : hits) {
+      if (!hit) continue;
+      const Vector front = front_normal(scene, hit->polygon);
+      next.push_back({hit->point, hit->side == Side::front ? front : Vector(-front), hit->polygon});
+    }
+    places = std::move(next);
+    if (2 * places.size() <= walks) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
+  const std::uint32_t walks = mesh.size() > many_patches ? few_walks : usual_walks;
+  std::vector<double> face_area;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    face_area.push_back(area_vector(corner_points(scene, p)).norm());
+  Eigen::VectorXd enclosed(mesh.size());
+  parallel_for(mesh.size(), [&](std::size_t k) {
+    const auto patch = static_cast<PatchIndex>(k);
+    const PolygonIndex polygon = mesh.polygon[patch];
+    const FacingPlace place{mesh.centroid[patch], mesh.normal[patch], polygon};
+    enclosed[patch] = is_enclosed(scene, faces, place, k, face_area[polygon], walks) ? 1 : 0;
+  });
+  return enclosed;
+}
+
+std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& faces,
+                                          std::span<const FacingPlace> places) {
+  std::vector<std::uint8_t> enclosed(places.size(), 0);
+  parallel_for(places.size(),
+               [&](std::size_t k) { enclosed[k] = is_enclosed(scene, faces, places[k], k, 0, usual_walks) ? 1 : 0; });
+  return enclosed;
+}
+
 namespace {
 
 // How far before a patch its space is looked at, as a share of the shell's extent.
@@ -63,6 +152,126 @@ Eigen::VectorXd inside_shells(const Scene& scene, const PatchMesh& mesh, Dividin
     if (std::any_of(dividing.begin(), dividing.end(), holds_it)) inside[i] = 1;
   });
   return inside;
+}
+
+namespace {
+
+constexpr const char* inside = ".inside";
+constexpr const char* outside = ".outside";
+
+std::set<std::string> names_in(const Scene& scene) {
+  std::set<std::string> known(scene.groups.begin(), scene.groups.end());
+  for (const Material& material : scene.materials) known.insert(material.name);
+  for (const NamedRoom& room : scene.rooms) known.insert(room.name);
+  return known;
+}
+
+// "a, b, c and 12 more, which patchlight check --all lists"
+std::string first_of(const std::vector<std::string>& names) {
+  constexpr std::size_t few = 20;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k == 0 ? "" : ", ") + names[k];
+  if (names.size() <= few) return list;
+  return list + " and " + std::to_string(names.size() - few) + " more, which patchlight check --all lists";
+}
+
+// A material, object, group or room, or one side of it.
+struct Interest {
+  std::string name;
+  std::optional<bool> is_inside = {};  // nothing: both sides
+};
+
+// What is called "room.inside" itself is meant before the inside of "room".
+Interest interest_named(const std::string& name, const std::set<std::string>& known) {
+  if (known.contains(name)) return {name};
+  for (const std::string side : {inside, outside}) {
+    if (name.ends_with(side)) return {name.substr(0, name.size() - side.size()), side == inside};
+  }
+  return {name};
+}
+
+std::vector<Interest> interests_named(const Scene& scene, const std::vector<std::string>& names) {
+  const std::set<std::string> known = names_in(scene);
+  std::vector<Interest> interests;
+  for (const std::string& name : names) interests.push_back(interest_named(name, known));
+  return interests;
+}
+
+// Of the rooms of this name, per patch whether it faces into one.
+std::vector<bool> facing_into(const Scene& scene, const PatchMesh& mesh, const std::string& name) {
+  std::vector<bool> faces(mesh.size(), false);
+  for (const NamedRoom& room : scene.rooms) {
+    if (room.name != name) continue;
+    const RoomBody body(room.faces);
+    for (PatchIndex i = 0; i < mesh.size(); ++i)
+      faces[i] = faces[i] || body.holds(mesh.centroid[i] + body.step() * mesh.normal[i]);
+  }
+  return faces;
+}
+
+bool is_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, const Interest& interest) {
+  const std::uint32_t group = scene.polygons[mesh.polygon[i]].group;
+  return scene.materials[mesh.material[i]].name == interest.name ||
+         (group < scene.groups.size() && scene.groups[group] == interest.name);
+}
+
+// 1 for each patch of what is named, on whichever side of it. A side alone means that of everything.
+Eigen::VectorXd meant_by(const Scene& scene, const PatchMesh& mesh, const Interest& interest) {
+  if (interest.name.empty()) return Eigen::VectorXd::Ones(mesh.size());
+  const std::vector<bool> into_room = facing_into(scene, mesh, interest.name);
+  Eigen::VectorXd meant(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) meant[i] = is_of(scene, mesh, i, interest) || into_room[i];
+  return meant;
+}
+
+// By daylight there is so much more light outside that an error relative to all of it says nothing of the rooms.
+Eigen::VectorXd interest_by_default(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) {
+  for (PatchIndex i = 0; i < enclosed.size(); ++i) {
+    if (enclosed[i] == 1 && (scene.materials[mesh.material[i]].reflectance > 0).any()) return enclosed;
+  }
+  return Eigen::VectorXd::Ones(mesh.size());
+}
+
+}  // namespace
+
+Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names,
+                            const Eigen::VectorXd& enclosed) {
+  if (names.empty()) return interest_by_default(scene, mesh, enclosed);
+  const std::vector<Interest> interests = interests_named(scene, names);
+  const bool sides =
+      std::any_of(interests.begin(), interests.end(), [](const Interest& i) { return i.is_inside.has_value(); });
+  const Eigen::VectorXd within = sides ? inside_shells(scene, mesh, Dividing::all) : Eigen::VectorXd();
+  Eigen::VectorXd interest = Eigen::VectorXd::Zero(mesh.size());
+  for (const Interest& one : interests) {
+    const Eigen::VectorXd meant = meant_by(scene, mesh, one);
+    const bool by_shells = enclosed.size() == 0 || (sides && total(meant.cwiseProduct(within)) > 0);
+    const Eigen::VectorXd& inner = by_shells ? within : enclosed;
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      if (meant[i] == 1 && (!one.is_inside || *one.is_inside == (inner[i] == 1))) interest[i] = 1;
+    }
+  }
+  return interest;
+}
+
+void require_reflecting(const Scene& scene, const RadiosityProblem& problem, const Eigen::VectorXd& interest) {
+  if ((interest.array() == 1).all()) return;
+  const Field even = interest.array().replicate(1, problem.exitance.cols());
+  if ((highest(problem.scattering.reflect(even)) > 0).any()) return;
+  throw InputError(scene.file, "the surfaces of accuracy.interest reflect no light, of which the accuracy is measured");
+}
+
+void require_names(const Scene& scene, const std::vector<std::string>& names) {
+  const std::set<std::string> known = names_in(scene);
+  for (const std::string& name : names) {
+    if (name == inside || name == outside || known.contains(interest_named(name, known).name)) continue;
+    const std::vector<std::string> all(known.begin(), known.end());
+    const std::string hint = suggestion(name, all);
+    std::string message = "no material, object, group or room is called '" + name + "'";
+    message += hint;
+    message += hint.empty() ? "; expected one of " + first_of(all) : " Expected a name";
+    message += ", or one with .inside or .outside";
+    throw InputError(scene.file, message);
+  }
 }
 
 }  // namespace patchlight

@@ -2,8 +2,8 @@
 
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
-#include "mesh/means_around.h"
-#include "mesh/quarters.h"
+#include "mesh/interpolate.h"
+#include "mesh/small_patches.h"
 
 #include <array>
 #include <cmath>

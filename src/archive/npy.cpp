@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "files/regular_file.h"
+#include "files/reason.h"
 #include "output/file/whole_file.h"
 
 #include <algorithm>

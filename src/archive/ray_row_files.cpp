@@ -4,16 +4,16 @@
 #include "patchlight/output/provenance.h"
 
 #include "archive/file_names.h"
-#include "archive/geometry_hash.h"
 #include "archive/npy.h"
 #include "archive/scene_file.h"
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
-#include "output/file/whole_folder.h"
-#include "output/file/write_bytes.h"
+#include "files/sha256.h"
+#include "output/file/whole_file.h"
 #include "output/mesh/write_mesh.h"
 #include "plan/planned_scene.h"
-#include "transport/ray_exchange.h"
-#include "transport/rows_by_class.h"
+#include "scene/specular_faces.h"
+#include "transport/ray_transport.h"
 
 #include <algorithm>
 #include <array>
@@ -27,10 +27,116 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 namespace patchlight {
+namespace {
+
+// To be raised when rows are found in another way, so that blocks of before are not taken.
+constexpr std::uint32_t way_of_finding = 2;
+
+std::string bytes_of_faces(const Scene& scene) {
+  std::string bytes;
+  const SpecularFaces specular(scene, Reflections::followed);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Vector normal = front_normal(scene, p);
+    for (const Side side : {Side::front, Side::back}) append_bytes(bytes, specular.held(p, side));
+    append_bytes(bytes, specular.transmittance(p, normal));
+    for (const Vector& direction : {normal, Vector(-normal)}) append_bytes(bytes, specular.reflectance(p, direction));
+    append_bytes(bytes, scene.polygons[p].corners.size());
+    for (const Point& corner : corner_points(scene, p)) {
+      for (const double coordinate : corner) append_bytes(bytes, coordinate);
+    }
+  }
+  return bytes;
+}
+
+std::string bytes_of_effects(const EffectOptions& effects) {
+  std::string bytes;
+  for (const auto* list : {&effects.force, &effects.skip}) {
+    append_bytes(bytes, list->size());
+    for (const Effect effect : *list) append_bytes(bytes, static_cast<std::int32_t>(effect));
+  }
+  return bytes;
+}
+
+std::string bytes_of(const RayOptions& options, std::span<const float> bright_densities) {
+  std::string bytes;
+  append_bytes(bytes, way_of_finding);
+  append_bytes(bytes, options.rays);
+  append_bytes(bytes, options.toward_bright);
+  append_bytes(bytes, options.seed);
+  for (const std::uint8_t doublings : options.doublings) append_bytes(bytes, doublings);
+  for (const float density : bright_densities) append_bytes(bytes, density);
+  return bytes;
+}
+
+std::string name_begin(const std::string& key) { return "rows_" + key + "_"; }
+
+// 32 bits of a SHA-256 of a block.
+std::int32_t digest(const std::string& key, std::size_t block, std::span<const std::int32_t> words) {
+  constexpr std::size_t digits = 8;
+  constexpr int hexadecimal = 16;
+  std::string bytes;
+  append_bytes(bytes, block);
+  bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
+  const std::array parts{key, std::move(bytes)};
+  return static_cast<std::int32_t>(std::stoul(sha256(parts).substr(0, digits), nullptr, hexadecimal));
+}
+
+}  // namespace
+
+std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions& options,
+                    std::span<const float> bright_densities) {
+  constexpr std::size_t digits = 16;
+  const std::array parts{std::string(version()), geometry_hash(mesh), bytes_of_faces(of.scene),
+                         bytes_of_effects(of.effects), bytes_of(options, bright_densities)};
+  return sha256(parts).substr(0, digits);
+}
+
+RowBlocks row_blocks_in(const std::filesystem::path& folder, const std::string& key) {
+  const auto file = [folder, key](std::size_t block) {
+    return folder / (name_begin(key) + std::to_string(block) + ".npy");
+  };
+  const auto read = [file, key](std::size_t block) -> std::optional<std::vector<std::int32_t>> {
+    try {
+      if (!std::filesystem::exists(file(block))) return std::nullopt;
+      const auto stored = read_npy_numbers<std::int32_t>(file(block), npy_count(file(block)));
+      if (stored.empty()) return std::nullopt;
+      std::vector<std::int32_t> words(stored.begin(), stored.end() - 1);
+      if (stored.back() != digest(key, block, words)) return std::nullopt;
+      return words;
+    } catch (const InputError&) {
+      return std::nullopt;
+    } catch (const std::filesystem::filesystem_error&) {
+      return std::nullopt;
+    }
+  };
+  const auto keep = [folder, file, key](std::size_t block, std::span<const std::int32_t> words) {
+    // A run that shares the folder may have removed it, when nothing was in it.
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::vector<std::int32_t> stored(words.begin(), words.end());
+    stored.push_back(digest(key, block, words));
+    write_npy_numbers(file(block), std::span<const std::int32_t>(stored));
+  };
+  return {read, keep};
+}
+
+void remove_row_blocks(const std::filesystem::path& folder, std::span<const std::string> keys) {
+  std::error_code error;
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    for (const std::string& key : keys) {
+      if (name.starts_with(name_begin(key))) files.push_back(entry->path());
+    }
+  }
+  for (const std::filesystem::path& file : files) std::filesystem::remove(file, error);
+}
+
 namespace {
 
 // The files of rays that are specular on their way, in a folder of rows of rays.
@@ -73,8 +179,7 @@ PatchIndex patch_of(std::int32_t column) {
   return column == at_back ? SpecularStop::at_back : static_cast<PatchIndex>(column);
 }
 
-[[noreturn]] void refuse_stops(const std::filesystem::path& file, const std::string& found,
-                               const std::string& expected) {
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
   throw InputError(file.string(),
                    "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
@@ -85,7 +190,7 @@ void require_whole_rays(const std::filesystem::path& file, const RayRows& rows) 
     if (rows.first_stop[i] == rows.first_stop[i + 1]) continue;
     const RayStep last = rows.stops[rows.first_stop[i + 1] - 1].step();
     if (last != RayStep::ends && last != RayStep::kept)
-      refuse_stops(file, "a row whose last ray does not end", "rays that end in their row");
+      refuse(file, "a row whose last ray does not end", "rays that end in their row");
   }
 }
 
@@ -131,8 +236,8 @@ void write_classes(const std::filesystem::path& folder, const RowsByClass& by_cl
 void read_stops(const std::filesystem::path& folder, std::size_t half, const NumbersOf& there, RayRows& rows) {
   const auto begins = read_npy_numbers<std::int64_t>(file_of(folder, 0, half), there.patches + 1);
   if (begins.front() != 0 || !std::is_sorted(begins.begin(), begins.end()))
-    refuse_stops(file_of(folder, 0, half), "rows that begin before those above them",
-                 "0 first, then no number below the one before");
+    refuse(file_of(folder, 0, half), "rows that begin before those above them",
+           "0 first, then no number below the one before");
   rows.first_stop.assign(begins.begin(), begins.end());
   const std::size_t count = rows.first_stop.back();
   const auto columns = read_npy_numbers<std::int32_t>(file_of(folder, 1, half), count);
@@ -142,17 +247,17 @@ void read_stops(const std::filesystem::path& folder, std::size_t half, const Num
   rows.stops.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     if (columns[k] < at_back || columns[k] >= static_cast<std::int64_t>(there.patches))
-      refuse_stops(file_of(folder, 1, half), "column " + std::to_string(columns[k]),
-                   "one of " + std::to_string(there.patches) + " patches, from 0, or -1 or -2");
+      refuse(file_of(folder, 1, half), "column " + std::to_string(columns[k]),
+             "one of " + std::to_string(there.patches) + " patches, from 0, or -1 or -2");
     if (!(factors[k] >= 0 && factors[k] <= 1))
-      refuse_stops(file_of(folder, 2, half), "a form factor of " + std::to_string(factors[k]), "numbers from 0 to 1");
+      refuse(file_of(folder, 2, half), "a form factor of " + std::to_string(factors[k]), "numbers from 0 to 1");
     SpecularStop stop{patch_of(columns[k]), factors[k], static_cast<PolygonIndex>(polygons[k]),
                       std::bit_cast<std::uint32_t>(bits[k])};
     if (static_cast<std::uint32_t>(stop.step()) >= ray_steps)
-      refuse_stops(file_of(folder, 4, half), "step " + std::to_string(stop.bits & 7U), "one from 0 to 5");
+      refuse(file_of(folder, 4, half), "step " + std::to_string(stop.bits & 7U), "one from 0 to 5");
     if (!is_polygon(stop, there.polygons))
-      refuse_stops(file_of(folder, 3, half), "polygon " + std::to_string(polygons[k]),
-                   "one of " + std::to_string(there.polygons) + " polygons, from 0");
+      refuse(file_of(folder, 3, half), "polygon " + std::to_string(polygons[k]),
+             "one of " + std::to_string(there.polygons) + " polygons, from 0");
     rows.stops.push_back(stop);
   }
   require_whole_rays(file_of(folder, 4, half), rows);
@@ -164,7 +269,7 @@ std::vector<std::array<double, 2>> read_kinds(const std::filesystem::path& file)
   const auto numbers = read_npy_numbers<double>(file, count);
   const bool are_kinds = count > 0 && count % 2 == 0 &&
                          std::all_of(numbers.begin(), numbers.end(), [](double kind) { return std::isfinite(kind); });
-  if (!are_kinds) refuse_stops(file, "what is no pair of numbers for each polygon", "two numbers for each");
+  if (!are_kinds) refuse(file, "what is no pair of numbers for each polygon", "two numbers for each");
   std::vector<std::array<double, 2>> kinds;
   for (std::size_t k = 0; k < count; k += 2) kinds.push_back({numbers[k], numbers[k + 1]});
   return kinds;
@@ -301,11 +406,6 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   json["files"] = files_of_rows(is_specular);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
-  throw InputError(file.string(),
-                   "found " + found + "; expected " + expected + "\nhint: compute the form factors again");
 }
 
 // Where rows begin among all their entries. What is below 0 in the file is a very large number here.

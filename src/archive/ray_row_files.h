@@ -1,12 +1,36 @@
 #pragma once
 
+#include "patchlight/plan/effects.h"
+#include "patchlight/scene/scene.h"
+
 #include "archive/form_factor_files.h"
 #include "pipeline/ray_form_factors.h"
+#include "transport/ray_rows.h"
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace patchlight {
+
+/// What rows of rays depend on besides the patches and how rays are sent.
+struct RowScene {
+  const Scene& scene;
+  EffectOptions effects;  ///< asked for: whether anything is in the way of rays
+};
+
+/// 16 hexadecimal digits of a SHA-256 of all that rows depend on: the faces and what they let through, the patches, how
+/// rays are sent, and how this library finds rows.
+std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions& options,
+                    std::span<const float> bright_densities);
+
+/// Blocks of rows as files rows_<key>_<block>.npy of a folder, which is made where it is missing: each of them whole or
+/// not there, with a digest at its end. Files that cannot be read, or whose digest is another one, count as not there.
+/// keep() throws OutputError where a file cannot be written.
+RowBlocks row_blocks_in(const std::filesystem::path& folder, const std::string& key);
+
+/// Removes the files of these keys. What cannot be removed stays.
+void remove_row_blocks(const std::filesystem::path& folder, std::span<const std::string> keys);
 
 /// Writes a folder of rows of rays, whole or not at all: for both halves of the rays sparse rows, the lamps that are
 /// apart with their form factors, area.npy, lost_share.npy, hit_distance.npy, mesh.vtp, scene.json, info.json.

@@ -2,14 +2,13 @@
 
 #include "archive/file_names.h"
 #include "archive/form_factor_files.h"
-#include "archive/geometry_hash.h"
+#include "archive/json_values.h"
 #include "archive/npy.h"
-#include "archive/sampling_error_json.h"
+#include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "files/reason.h"
-#include "files/regular_file.h"
 #include "transport/closure.h"
-#include "transport/narrow.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <cmath>

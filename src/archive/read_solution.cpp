@@ -8,7 +8,7 @@
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "scene/extent.h"
-#include "visibility/covered_places.h"
+#include "visibility/flat_polygon.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 #include <vector>
 
 namespace patchlight {
@@ -40,6 +41,20 @@ std::string near_match(const std::string& found, std::span<const std::string> al
 std::string suggestion(const std::string& found, std::span<const std::string> allowed) {
   const std::string nearest = near_match(found, allowed);
   return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+namespace {
+
+constexpr std::string_view plain_letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,:=-+@%";
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
+  if (!word.empty() && word.find_first_not_of(plain_letters) == std::string::npos) return word;
+  // Within quotes a quote cannot stand: they are closed before it, and opened again after it.
+  std::string text = "'";
+  for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return text + "'";
 }
 
 }  // namespace patchlight

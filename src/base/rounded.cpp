@@ -1,10 +1,18 @@
 #include "base/rounded.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
 namespace patchlight {
+
+std::string shortest(double number) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number);
+  return {text.data(), end};
+}
 
 std::string rounded(double value, int digits) {
   if (!std::isfinite(value)) return "-";

@@ -4,6 +4,9 @@
 
 namespace patchlight {
 
+/// The number with as few digits as tell it from every other.
+std::string shortest(double number);
+
 /// A number with so many digits, for people to read; "-" for what is not finite.
 std::string rounded(double value, int digits = 3);
 

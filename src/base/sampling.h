@@ -2,7 +2,10 @@
 
 #include "patchlight/base/geometry.h"
 
+#include <Eigen/Core>
 #include <array>
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,5 +63,13 @@ Vector cosine_direction(const Vector& normal, double u, double v);
 
 /// Its density with respect to solid angle, 1/sr; zero below the horizon.
 double square_to_cosine_hemisphere_pdf(const Vector& direction);
+
+/// 2^d for each of `size` doublings d; 1 for all where there are none.
+inline Eigen::ArrayXd multiples(std::span<const std::uint8_t> doublings, Eigen::Index size) {
+  assert(doublings.empty() || doublings.size() == static_cast<std::size_t>(size));
+  Eigen::ArrayXd times = Eigen::ArrayXd::Ones(size);
+  for (std::size_t i = 0; i < doublings.size(); ++i) times[static_cast<Eigen::Index>(i)] = std::exp2(doublings[i]);
+  return times;
+}
 
 }  // namespace patchlight

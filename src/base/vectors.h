@@ -3,7 +3,10 @@
 #include "patchlight/base/field.h"
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 namespace patchlight {
 
@@ -45,5 +48,58 @@ Field scaled(const FieldView& field, const Eigen::ArrayXd& factors);
 
 /// A field plus several others of as many bands, each band of these multiplied by a factor: a row for each.
 Field plus_combination(Field field, std::span<const Field> others, const Eigen::ArrayXXd& factors);
+
+/// Conjugate gradients (Hestenes and Stiefel 1952) with a preconditioner M, as in Saad 2003, algorithm 9.1, for A x = b
+/// with A and M symmetric and positive: the residual r, the direction p, and how far to go along it. Knows neither A
+/// nor x. In each step the caller finds q = A p, adds length(q) p to x, and calls advance(). `Vector` is a Field, each
+/// band of which has scalars of its own, or an Eigen::VectorXd.
+template <typename Vector>
+class ConjugateDirections {
+ public:
+  using Scalars = std::conditional_t<std::is_same_v<Vector, Field>, Eigen::ArrayXd, double>;
+  using Preconditioner = std::function<Vector(const Vector& r)>;
+
+  /// Starts at an x with b - A x = `residual`. `preconditioner` gives M^-1 r; empty: r itself.
+  explicit ConjugateDirections(Vector residual, Preconditioner preconditioner = {})
+      : preconditioner_(std::move(preconditioner)),
+        r_(std::move(residual)),
+        p_(preconditioned()),
+        rz_(product(r_, p_)) {}
+
+  const Vector& residual() const { return r_; }
+  const Vector& direction() const { return p_; }
+  /// r . M^-1 r
+  const Scalars& square() const { return rz_; }
+
+  /// (r . M^-1 r) / (p . q); 0 for a band that is solved; of a single vector not finite, then.
+  Scalars length(const Vector& q) const { return ratio(rz_, product(p_, q)); }
+
+  /// The residual after that step, and the direction after it.
+  void advance(const Vector& q, const Scalars& length) {
+    r_ -= times(length, q);
+    const Vector z = preconditioned();
+    const Scalars rz = product(r_, z);
+    p_ = z + times(ratio(rz, rz_), p_);
+    rz_ = rz;
+  }
+
+  /// Takes so much of z out of the direction, as deflation does.
+  void take_out(const Vector& z, const Scalars& multiple) { p_ -= times(multiple, z); }
+
+ private:
+  static Eigen::ArrayXd product(const Field& x, const Field& y) { return dot(x, y); }
+  static double product(const Eigen::VectorXd& x, const Eigen::VectorXd& y) { return scalar_product(x, y); }
+  static Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) { return quotient(a, b); }
+  static double ratio(double a, double b) { return a / b; }
+  static Field times(const Eigen::ArrayXd& factors, const Field& x) { return scaled(x, factors); }
+  static Eigen::VectorXd times(double factor, const Eigen::VectorXd& x) { return factor * x; }
+
+  Vector preconditioned() const { return preconditioner_ ? preconditioner_(r_) : r_; }
+
+  Preconditioner preconditioner_;
+  Vector r_;
+  Vector p_;
+  Scalars rz_;
+};
 
 }  // namespace patchlight

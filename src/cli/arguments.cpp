@@ -5,7 +5,6 @@
 #include "patchlight/output/provenance.h"
 
 #include "base/near_match.h"
-#include "base/shell_word.h"
 #include "cli/command_options.h"
 #include "cli/former_names.h"
 #include "cli/help.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/simulate.h"
 
-#include "archive/row_block_files.h"
+#include "archive/ray_row_files.h"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "cli/distinct_files.h"
 
 #include "cli/arguments.h"
-#include "output/file/temporary.h"
+#include "output/file/whole_file.h"
 
 #include <algorithm>
 #include <optional>

@@ -5,7 +5,6 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "output/file/whole_file.h"
-#include "output/file/write_bytes.h"
 #include "plan/survey.h"
 
 #include <iostream>

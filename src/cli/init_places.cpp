@@ -2,7 +2,7 @@
 
 #include "patchlight/scene/sides.h"
 
-#include "accuracy/enclosed.h"
+#include "accuracy/spaces.h"
 #include "gather/sensor_places.h"
 #include "input/left_out.h"
 #include "input/materials.h"

@@ -1,6 +1,5 @@
 // Options of the commands that light a model: check, init, solve, render, plan, relight.
-#include "base/lower_case.h"
-#include "base/shell_word.h"
+#include "base/near_match.h"
 #include "cli/add_option.h"
 #include "cli/command_options.h"
 #include "cli/distinct_files.h"

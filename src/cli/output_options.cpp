@@ -6,8 +6,8 @@
 #include "cli/add_option.h"
 #include "cli/parse_value.h"
 #include "cli/run_options.h"
+#include "output/image/write_image.h"
 #include "output/image/write_lightmap.h"
-#include "output/image/write_picture.h"
 #include "output/vtk/write_points.h"
 #include "scene/projection.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/rounded.h"
 #include "cli/output_options.h"
-#include "output/image/write_picture.h"
+#include "output/image/write_image.h"
 #include "render/lens.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/text_table.h"
-#include "light/colour.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,13 @@
 #include "form_factor/patch_cluster.h"
 
+#include "base/target_clones.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -133,6 +136,172 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
   std::sort(clusters.begin(), clusters.end(),
             [](const PatchCluster& a, const PatchCluster& b) { return a.patches[0] < b.patches[0]; });
   return clusters;
+}
+
+namespace {
+
+// Loops over lanes are written so that the compiler turns them into vector instructions.
+
+// As for unoccluded_exchange_area(): pairs nearer than these, in diameters of the larger patch, are computed by the
+// contour integral, and with the fine rules.
+constexpr float near_reach = 2;
+constexpr float middle_reach = 4;
+
+// Heights count as zero below this share of the radii, and of the distance, which is what rounding leaves of them.
+constexpr float single_height_tolerance = 1e-7F;
+constexpr float height_rounding = 4e-7F;
+
+// A coordinate and its differences are right to this share of the largest; distances have to be known better than this.
+constexpr float position_rounding = 1.2e-7F;
+constexpr float distance_tolerance = 1e-4F;
+
+struct Float3 {
+  float x, y, z;
+};
+
+PATCHLIGHT_INLINE Float3 lane_of(const LaneVectors& vectors, int lane) {
+  const auto k = static_cast<std::size_t>(lane);
+  return {vectors.x.at[k], vectors.y.at[k], vectors.z.at[k]};
+}
+
+PATCHLIGHT_INLINE Float3 minus(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+// Adds int int cos cos' / r^4 over the pairs of quadrature points of one patch, whose points are `shift` away in the
+// frame of the cluster, and each patch of the cluster.
+template <int capacity>
+PATCHLIGHT_INLINE void add_products(const LaneRules<capacity>& first, int lane, const Float3& normal,
+                                    const Float3& shift, const LaneRules<capacity>& second, const LaneVectors& normals,
+                                    Lanes& sum) {
+  for (int a = 0; a < first.count; ++a) {
+    const auto ka = static_cast<std::size_t>(a);
+    const Float3 p = minus(lane_of(first.point[ka], lane), shift);
+    const float weight = first.weight[ka].at[static_cast<std::size_t>(lane)];
+    Lanes inner;
+    for (int b = 0; b < second.count; ++b) {
+      const auto kb = static_cast<std::size_t>(b);
+      const LaneVectors& point = second.point[kb];
+      for (std::size_t l = 0; l < Lanes::count; ++l) {
+        const float x = point.x.at[l] - p.x;
+        const float y = point.y.at[l] - p.y;
+        const float z = point.z.at[l] - p.z;
+        const float squared = x * x + y * y + z * z;
+        const float cosine = std::max(0.0F, normal.x * x + normal.y * y + normal.z * z);
+        const float other = std::max(0.0F, -(normals.x.at[l] * x + normals.y.at[l] * y + normals.z.at[l] * z));
+        inner.at[l] += second.weight[kb].at[l] * cosine * other / (squared * squared);
+      }
+    }
+    for (std::size_t l = 0; l < Lanes::count; ++l) sum.at[l] += weight * inner.at[l];
+  }
+}
+
+// Per lane, the lowest and highest corner of the lane's patch over the plane of the one patch, and of the one patch
+// over that of the lane's.
+struct Heights {
+  Lanes lowest, highest, lowest_of_one, highest_of_one;
+};
+
+PATCHLIGHT_INLINE Heights heights(const PatchCluster& first, int lane, const Float3& shift,
+                                  const PatchCluster& second) {
+  Heights h;
+  const Float3 normal = lane_of(first.normal, lane);
+  const Float3 corner0 = minus(lane_of(first.corner[0], lane), shift);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const LaneVectors& corner = second.corner[k];
+    const LaneVectors& origin = second.corner[0];
+    const Float3 mine = minus(lane_of(first.corner[k], lane), shift);
+    for (std::size_t l = 0; l < Lanes::count; ++l) {
+      const float height = normal.x * (corner.x.at[l] - corner0.x) + normal.y * (corner.y.at[l] - corner0.y) +
+                           normal.z * (corner.z.at[l] - corner0.z);
+      const float of_one = second.normal.x.at[l] * (mine.x - origin.x.at[l]) +
+                           second.normal.y.at[l] * (mine.y - origin.y.at[l]) +
+                           second.normal.z.at[l] * (mine.z - origin.z.at[l]);
+      h.lowest.at[l] = k == 0 ? height : std::min(h.lowest.at[l], height);
+      h.highest.at[l] = k == 0 ? height : std::max(h.highest.at[l], height);
+      h.lowest_of_one.at[l] = k == 0 ? of_one : std::min(h.lowest_of_one.at[l], of_one);
+      h.highest_of_one.at[l] = k == 0 ? of_one : std::max(h.highest_of_one.at[l], of_one);
+    }
+  }
+  return h;
+}
+
+enum class Zone : std::uint8_t { none = 0, exact = 1, middle = 2, far = 3 };
+
+// What each pair of the row needs.
+PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float3& shift, const PatchCluster& second,
+                                std::array<std::int32_t, Lanes::count>& zone) {
+  const Heights h = heights(first, lane, shift, second);
+  const Float3 centroid = minus(lane_of(first.centroid, lane), shift);
+  const float radius = first.radius.at[static_cast<std::size_t>(lane)];
+  // Patches of clusters that are wide against the patches' distance are left to double precision.
+  const float rounding =
+      position_rounding * (first.reach + second.reach + std::abs(shift.x) + std::abs(shift.y) + std::abs(shift.z));
+  const float least = rounding * rounding / (distance_tolerance * distance_tolerance);
+  for (std::size_t l = 0; l < Lanes::count; ++l) {
+    const float x = second.centroid.x.at[l] - centroid.x;
+    const float y = second.centroid.y.at[l] - centroid.y;
+    const float z = second.centroid.z.at[l] - centroid.z;
+    const float squared = x * x + y * y + z * z;
+    const float larger = std::max(radius, second.radius.at[l]);
+    const float reach = squared / (4 * larger * larger);
+    const float tolerance = single_height_tolerance * (radius + second.radius.at[l]) +
+                            height_rounding * (std::abs(x) + std::abs(y) + std::abs(z));
+    const int coarse = static_cast<int>(squared < least);
+    const float lowest_seen = coarse != 0 ? -rounding : tolerance;
+    const int facing =
+        static_cast<int>(h.highest.at[l] > lowest_seen) & static_cast<int>(h.highest_of_one.at[l] > lowest_seen);
+    const int exact = coarse | static_cast<int>(reach < near_reach * near_reach) |
+                      static_cast<int>(h.lowest.at[l] < -tolerance) |
+                      static_cast<int>(h.lowest_of_one.at[l] < -tolerance);
+    const int far = static_cast<int>(reach >= middle_reach * middle_reach);
+    zone[l] = facing * (exact + (1 - exact) * (2 + far));
+  }
+}
+
+}  // namespace
+
+PATCHLIGHT_TARGET_CLONES
+ClusterRow cluster_row(const PatchCluster& first, int lane, const PatchCluster& second) {
+  ClusterRow row;
+  const Eigen::Vector3f offset = ((second.centre - first.centre) / first.unit).cast<float>();
+  const Float3 shift{offset.x(), offset.y(), offset.z()};
+  alignas(64) std::array<std::int32_t, Lanes::count> zone;
+  classify(first, lane, shift, second, zone);
+  int any_middle = 0;
+  int any_far = 0;
+  for (std::size_t l = 0; l < static_cast<std::size_t>(second.size); ++l) {
+    row.facing = static_cast<std::uint16_t>(row.facing | static_cast<int>(zone[l] != 0) << l);
+    row.exact = static_cast<std::uint16_t>(row.exact | static_cast<int>(zone[l] == 1) << l);
+    any_middle |= static_cast<int>(zone[l] == 2);
+    any_far |= static_cast<int>(zone[l] == 3);
+  }
+  const Float3 normal = lane_of(first.normal, lane);
+  Lanes middle;
+  Lanes far;
+  if (any_middle != 0) add_products(first.fine, lane, normal, shift, second.fine, second.normal, middle);
+  if (any_far != 0) add_products(first.coarse, lane, normal, shift, second.coarse, second.normal, far);
+  const auto scale = static_cast<float>(first.unit * first.unit / std::numbers::pi);
+  for (std::size_t l = 0; l < Lanes::count; ++l) {
+    row.unoccluded.at[l] = scale * (zone[l] == 2 ? middle.at[l] : zone[l] == 3 ? far.at[l] : 0.0F);
+  }
+  return row;
+}
+
+bool averted(const PatchCluster& first, const PatchCluster& second) {
+  const auto behind = [](const PatchCluster& plane, const PatchCluster& other) {
+    if (!plane.is_planar) return false;
+    const Float3 normal = lane_of(plane.normal, 0);
+    const Eigen::Vector3f offset = ((other.centre - plane.centre) / plane.unit).cast<float>();
+    const Float3 origin = minus(lane_of(plane.corner[0], 0), {offset.x(), offset.y(), offset.z()});
+    float highest = -1;
+    for (const LaneVectors& corner : other.corner) {
+      for (std::size_t l = 0; l < Lanes::count; ++l) {
+        highest = std::max(highest, normal.x * (corner.x.at[l] - origin.x) + normal.y * (corner.y.at[l] - origin.y) +
+                                        normal.z * (corner.z.at[l] - origin.z));
+      }
+    }
+    return highest <= height_rounding * offset.lpNorm<1>();
+  };
+  return behind(first, second) || behind(second, first);
 }
 
 }  // namespace patchlight

@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "gather/sources.h"
-#include "mesh/longest_edge.h"
-#include "mesh/patches_at_vertices.h"
+#include "mesh/interpolate.h"
+#include "mesh/small_patches.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Dense>

@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "form_factor/solid_angle.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

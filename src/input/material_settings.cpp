@@ -4,11 +4,10 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/near_match.h"
-#include "base/shortest.h"
+#include "base/rounded.h"
 #include "input/stated_mirrors.h"
 #include "input/stated_panes.h"
 #include "input/text.h"
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
 

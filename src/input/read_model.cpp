@@ -4,7 +4,6 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/lower_case.h"
 #include "base/near_match.h"
 #include "input/building/read_gbxml.h"
 #include "input/building/read_hbjson.h"

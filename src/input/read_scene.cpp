@@ -4,7 +4,6 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
-#include "base/shortest.h"
 #include "files/sha256.h"
 #include "input/material_settings.h"
 #include "input/materials.h"
@@ -16,7 +15,6 @@
 #include "input/text.h"
 #include "input/toml/scene_file.h"
 #include "input/toml/toml_sensors.h"
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "scene/band_choice.h"
 #include "scene/dimmed.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "files/message.h"
+#include "files/isolated.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,6 +1,10 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/light/spectrum.h"
+
+#include <Eigen/Core>
+#include <optional>
 
 namespace patchlight {
 
@@ -17,5 +21,31 @@ double luminance(const Spectrum& radiance);
 
 /// The weights of bands in means by luminance; they sum up to 1.
 Spectrum luminous_shares(const Bands& bands);
+
+/// X, Y and Z (CIE 1931) of a radiance, Y in cd/m^2 as luminance(); of an irradiance Y is in lx.
+Eigen::Vector3d xyz_of(const Spectrum& radiance, const Bands& bands);
+
+/// The correlated colour temperature in K: that of the black body whose chromaticity is nearest in the CIE 1960 diagram
+/// (CIE 15:2004, 9.5). Nothing where it has no meaning: farther off than 0.05, below 1,000 K, above 50,000 K, or no
+/// light.
+std::optional<double> correlated_colour_temperature(const Eigen::Vector3d& xyz);
+
+/// True when bands are of wavelengths, so that colours beyond linear RGB are known.
+bool are_of_wavelengths(const Bands& bands);
+
+/// xyz_of() each row.
+Field xyz_rows(const FieldView& radiance, const Bands& bands);
+
+/// correlated_colour_temperature() of each row of X, Y and Z; not a number where it has no meaning.
+Eigen::VectorXd colour_temperatures(const FieldView& xyz);
+
+/// A colour in CIE 1976 L*, a*, b*.
+using Lab = Eigen::Vector3d;
+
+/// X, Y, Z seen beside this white (CIE 15:2004, eqs. 8.3 to 8.11).
+Lab lab_of(const Eigen::Vector3d& xyz, const Eigen::Vector3d& white);
+
+/// The colour difference CIEDE2000, all parametric factors 1: Sharma, Wu and Dalal 2005, eqs. 2 to 22.
+double colour_difference(const Lab& a, const Lab& b);
 
 }  // namespace patchlight

@@ -1,12 +1,11 @@
 #include "lighting/direct_irradiance.h"
 
-#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/receivers.h"
 #include "lighting/sampled_sources.h"
 #include "lighting/shifted_points.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/small_patches.h"
 
 #include <algorithm>

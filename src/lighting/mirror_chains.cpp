@@ -1,7 +1,7 @@
 #include "lighting/mirror_chains.h"
 
 #include "base/sampling.h"
-#include "form_factor/solid_angle.h"
+#include "form_factor/point_polygon.h"
 #include "lighting/mirrored_sources.h"
 #include "scene/transmittance.h"
 

@@ -1,6 +1,6 @@
 #include "lighting/sampled_sources.h"
 
-#include "form_factor/solid_angle.h"
+#include "form_factor/point_polygon.h"
 #include "lighting/shades.h"
 #include "lighting/sky_irradiance.h"
 

@@ -2,12 +2,13 @@
 
 #include "patchlight/scene/contact_lines.h"
 
-#include "mesh/coarse_outline.h"
-#include "mesh/patch_edges.h"
+#include "mesh/outline.h"
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace patchlight {
@@ -50,5 +51,11 @@ std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loo
 /// where that edge had the same followed_detail() those with lines as well.
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
                                   const ContactLines& contacts, const PatchEdges& edges, bool same_detail);
+
+/// The outlines of polygons with lines. Where a line ends on an outline there is a corner, also of a neighbour in about
+/// the same plane that shares the edge. Those that are not needed stay empty.
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges,
+                                  std::span<const std::uint8_t> is_needed);
+std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges);
 
 }  // namespace patchlight

@@ -1,11 +1,227 @@
 #include "mesh/interpolate.h"
 
+#include "base/parallel.h"
+
+#include <Eigen/QR>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
+
+std::span<const std::uint32_t> corner_vertices(const PatchMesh& mesh, PatchIndex patch) {
+  const auto& corners = mesh.corners[patch];
+  return std::span(corners).first(corners[3] == corners[2] ? 3 : 4);
+}
+
+// Sorted by counting.
+PatchesAtVertices::PatchesAtVertices(const PatchMesh& mesh) : first_(mesh.vertices.size() + 1, 0) {
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) ++first_[vertex + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  patches_.resize(first_.back());
+  std::vector<std::size_t> next = first_;
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) patches_[next[vertex]++] = i;
+}
+
+namespace {
+
+// Normals of patches that are the same surface have a product above this one.
+constexpr double same_facing = 0.9;
+
+}  // namespace
+
+Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+  const PatchesAtVertices at_vertex(mesh);
+  Field means = Field::Zero(values.rows(), values.cols());
+  parallel_for(mesh.size(), [&](std::size_t at) {
+    const auto i = static_cast<PatchIndex>(at);
+    auto sum = means.row(i);
+    double areas = 0;
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.normal[i].dot(mesh.normal[j]) < same_facing) continue;
+        sum += area[j] * values.row(j);
+        areas += area[j];
+      }
+    }
+    sum /= areas;
+  });
+  return means;
+}
+
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+  return mean_around(mesh, area, values.square()).sqrt();
+}
+
+namespace {
+
+// Boxes that are this share of their size apart may touch: patches of a tilted polygon do so within rounding.
+constexpr double touching_slack = 1e-9;
+
+Box padded_box_of(const PatchMesh& mesh, PatchIndex patch) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  Box box;
+  for (const Point& corner : std::span<const Point>(corners)) box.extend(corner);
+  const Vector pad = Vector::Constant(touching_slack * box.diagonal().norm());
+  return {box.min() - pad, box.max() + pad};
+}
+
+// The patches of one side of a polygon in the order of their lower ends along the axis on which they reach farthest.
+struct Row {
+  struct Entry {
+    Box box;
+    PatchIndex patch;
+  };
+  int axis = 0;
+  double longest = 0;  // of their boxes along the axis
+  std::vector<Entry> entries;
+};
+
+Row row_of(const PatchMesh& mesh, PatchRange range) {
+  Row row;
+  Box bounds;
+  for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
+    row.entries.push_back({padded_box_of(mesh, patch), patch});
+    bounds.extend(row.entries.back().box);
+  }
+  if (row.entries.empty()) return row;
+  bounds.sizes().maxCoeff(&row.axis);
+  for (const Row::Entry& entry : row.entries) row.longest = std::max(row.longest, entry.box.sizes()[row.axis]);
+  const auto low = [&](const Row::Entry& entry) { return entry.box.min()[row.axis]; };
+  std::stable_sort(row.entries.begin(), row.entries.end(),
+                   [&](const auto& a, const auto& b) { return low(a) < low(b); });
+  return row;
+}
+
+// What two convex patches of one plane have in common: the one is cut by the planes that stand on the edges of the
+// other (Sutherland and Hodgman 1974).
+std::vector<Point> overlap(const PatchCorners& patch, const Vector& normal, const PatchCorners& other) {
+  const std::span<const Point> cut_by = patch;
+  const std::span<const Point> whole = other;
+  std::vector<Point> left(whole.begin(), whole.end());
+  for (std::size_t k = 0; k < cut_by.size() && !left.empty(); ++k) {
+    const Vector along = cut_by[(k + 1) % cut_by.size()] - cut_by[k];
+    left = clip_to_half_space(left, cut_by[k], normal.cross(along));
+  }
+  return left;
+}
+
+// Calls visit(k, common outline) for the patches of `row` that may overlap a patch.
+template <typename Visit>
+void for_overlaps(const PatchMesh& mesh, PatchIndex patch, const PatchMesh& other, const Row& row, Visit visit) {
+  const Box box = padded_box_of(mesh, patch);
+  const PatchCorners corners = mesh.corner_points(patch);
+  const auto low = [&](const Row::Entry& entry, double end) { return entry.box.min()[row.axis] < end; };
+  const auto first = std::lower_bound(row.entries.begin(), row.entries.end(), box.min()[row.axis] - row.longest, low);
+  for (auto entry = first; entry != row.entries.end() && entry->box.min()[row.axis] <= box.max()[row.axis]; ++entry) {
+    if (!entry->box.intersects(box)) continue;
+    visit(entry->patch, overlap(corners, mesh.normal[patch], other.corner_points(entry->patch)));
+  }
+}
+
+std::vector<Row> rows_of(const PatchMesh& mesh) {
+  std::vector<Row> rows;
+  for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
+    rows.push_back(row_of(mesh, {mesh.first_patch[slot], mesh.first_patch[slot + 1]}));
+  }
+  return rows;
+}
+
+// Means over the patches of value(k, point) in the middle of what each has in common with a patch k of `other`.
+template <typename Value>
+Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns, Value value) {
+  assert(mesh.first_patch.size() == other.first_patch.size());
+  const std::vector<Row> rows = rows_of(other);
+  Field means = Field::Zero(mesh.size(), columns);
+  parallel_for(mesh.size(), [&](std::size_t i) {
+    const auto patch = static_cast<PatchIndex>(i);
+    const Row& row = rows[2 * static_cast<std::size_t>(mesh.polygon[i]) + static_cast<std::size_t>(mesh.side[i])];
+    double area = 0;
+    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
+      const double share = area_vector(common).norm();
+      if (share == 0) return;
+      means.row(patch) += share * value(k, area_centroid(common));
+      area += share;
+    });
+    assert(area > 0);
+    means.row(patch) /= area;
+  });
+  return means;
+}
+
+// Around the mean.
+struct Bounds {
+  double least;
+  double most;
+};
+
+// As much of a slope as keeps the corners of patch i within bounds.
+Eigen::Vector3d limited(const Eigen::Vector3d& slope, const PatchMesh& mesh, PatchIndex i, const Bounds& bounds) {
+  double share = 1;
+  const PatchCorners corners = mesh.corner_points(i);
+  for (int k = 0; k < corners.count; ++k) {
+    const double rise = slope.dot(corners.points[static_cast<std::size_t>(k)] - mesh.centroid[i]);
+    if (rise > bounds.most) share = std::min(share, bounds.most / rise);
+    if (rise < bounds.least) share = std::min(share, bounds.least / rise);
+  }
+  return share * slope;
+}
+
+}  // namespace
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
+  assert(values.rows() == other.size());
+  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
+}
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
+  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
+  const Eigen::Index columns = field.values.cols();
+  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
+    const Vector offset = point - other.centroid[k];
+    Field value = field.values.row(k);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
+    }
+    return value;
+  });
+}
+
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
+  const PatchesAtVertices at_vertex(mesh);
+  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
+  parallel_for(mesh.size(), [&](std::size_t row) {
+    const auto i = static_cast<PatchIndex>(row);
+    // Least squares over the patches around; without a slope across the patch.
+    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
+    Field least = values.row(i);
+    Field most = values.row(i);
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
+        const Vector way = mesh.centroid[j] - mesh.centroid[i];
+        moments += way * way.transpose();
+        right += way * (values.row(j) - values.row(i)).matrix();
+        least = least.min(values.row(j));
+        most = most.max(values.row(j));
+      }
+    }
+    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const Bounds bounds{least(0, c) - values(i, c), most(0, c) - values(i, c)};
+      field.slopes.row(i).segment(3 * c, 3) = limited(slope.col(c), mesh, i, bounds).transpose();
+    }
+  });
+  return field;
+}
+
 namespace {
 
 // The middles of edges that are those of a patch still, in the order of the cuts.

@@ -5,8 +5,58 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace patchlight {
+
+/// The vertices of a patch's three or four corners.
+std::span<const std::uint32_t> corner_vertices(const PatchMesh& mesh, PatchIndex patch);
+
+/// The patches that have a corner at each vertex, in their order.
+class PatchesAtVertices {
+ public:
+  explicit PatchesAtVertices(const PatchMesh& mesh);
+
+  std::span<const PatchIndex> operator[](std::size_t vertex) const {
+    return std::span(patches_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // per vertex; one more at the end
+  std::vector<PatchIndex> patches_;
+};
+
+/// Means, by the areas given in m^2, over the patches that share a vertex with a patch and face as it does, within 25
+/// degrees, itself among them: of a curved or triangulated surface as well.
+Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
+
+/// Root mean squares over the same patches.
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
+
+/// Means over the patches of `mesh` of a field that is constant on every patch of `other`, one row per patch of
+/// `other`: sum_k O_ik x_k / sum_k O_ik, where O_ik is the area in which two patches overlap. Both meshes are of the
+/// same sides of the same polygons; either may be the finer one. Where parts of patches are covered, the mean over what
+/// is exposed is average_over(share x) / average_over(share). The same bits for any number of threads. Costs about n +
+/// n' log n' + n sqrt(n') per side of a polygon.
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values);
+
+/// A field that is linear on every patch.
+struct SlopedField {
+  Field values;  ///< the means of the patches
+  Field slopes;  ///< three columns for each of `values`: the gradient, per metre
+};
+
+/// A field with the slopes that the means of the patches around show, by least squares; patches around are those of the
+/// same polygon side that share a corner. No corner gets a value beyond those of the patches around (Barth and
+/// Jespersen, AIAA 89-0366): what is not negative stays so.
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values);
+
+/// The same means of a field that is linear on every patch of `other`. So they do not depend on how the patches of both
+/// meshes lie to each other, but by the field's curvature.
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field);
 
 /// Weight of each patch (row) at each of its corners (column); the fourth of a triangle is not used.
 using CornerWeights = Eigen::Array<double, Eigen::Dynamic, 4, Eigen::RowMajor>;

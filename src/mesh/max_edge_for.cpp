@@ -1,7 +1,6 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
-#include "mesh/cut_outlines.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
@@ -185,7 +184,7 @@ class EdgeSearch::PatchNumber {
   }
 
   // The outlines of the polygons that are kept and not known to stay whole. Beyond twice its size neither lattice nor
-  // outline of a polygon depend on the longest edge (lattice_spacing() in refine_polygon.cpp): then its patches are
+  // outline of a polygon depend on the longest edge (lattice_spacing() in polygon_mesh.cpp): then its patches are
   // remembered, as long as the same lines are followed.
   std::vector<Outline> outlines_for(double edge) {
     constexpr double far_smaller = 2;

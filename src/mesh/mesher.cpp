@@ -1,10 +1,10 @@
 #include "mesh/mesher.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/sides.h"
 
 #include "base/parallel.h"
-#include "mesh/cut_outlines.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/outline.h"
 #include "mesh/polygon_mesh.h"
@@ -22,6 +22,20 @@
 #include <vector>
 
 namespace patchlight {
+
+PatchCorners PatchMesh::corner_points(PatchIndex patch) const {
+  const auto& indices = corners[patch];
+  PatchCorners result;
+  for (std::size_t k = 0; k < 4; ++k) result.points[k] = vertices[indices[k]];
+  result.count = indices[3] == indices[2] ? 3 : 4;
+  return result;
+}
+
+PatchRange PatchMesh::patches_on(PolygonIndex on_polygon, Side on_side) const {
+  const std::size_t slot = 2 * static_cast<std::size_t>(on_polygon) + static_cast<std::size_t>(on_side);
+  return {first_patch[slot], first_patch[slot + 1]};
+}
+
 namespace {
 
 // An edge of an outline, by whose ends its neighbours are found.

@@ -4,7 +4,7 @@
 #include "patchlight/scene/contact_lines.h"
 #include "patchlight/scene/sides.h"
 
-#include "mesh/patch_edges.h"
+#include "mesh/outline.h"
 
 #include <cstddef>
 #include <memory>

@@ -12,6 +12,26 @@
 
 namespace patchlight {
 
+/// Per patch of a sheet the one on its other side that has the same corners; a patch itself where there is none, as on
+/// all other polygons. Empty when the mesh has no sheets. O(n log n).
+std::vector<PatchIndex> other_sides(const PatchMesh& mesh);
+
+/// A mesh some patches of which are cut.
+struct Refinement {
+  PatchMesh mesh;
+  std::vector<PatchIndex> parent;  ///< per patch: the patch of the mesh before that it is or lies in
+};
+
+/// Cuts the marked patches into four by the middles of their edges, and besides them those that would otherwise have a
+/// neighbour a quarter of whose edge is shared: neighbours differ by one level at most. Of sheets both sides are cut
+/// alike. The four parts of a patch
+/// follow each other in its place; neighbours that share an edge share its middle. `marked` has an entry for each
+/// patch.
+Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked);
+
+/// Cuts every patch: patch i becomes the patches 4 i to 4 i + 3.
+PatchMesh refine(const PatchMesh& mesh);
+
 /// Patches and the larger ones they are parts of, for comparing what both give: the difference tells the error.
 struct NestedMesh {
   PatchMesh parents;

@@ -1,6 +1,6 @@
 #include "mesh/polygon_mesh.h"
 
-#include "mesh/lattice.h"
+#include "mesh/noded_lines.h"
 #include "mesh/outline.h"
 #include "mesh/triangulation.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/lattice.h"
+#include "mesh/noded_lines.h"
 #include "mesh/outline.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>

@@ -1,12 +1,14 @@
 #include "patchlight/output/write_result.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/output/provenance.h"
 
-#include "output/mesh/write_glb.h"
-#include "output/mesh/write_ply.h"
+#include "output/mesh/write_mesh.h"
 #include "output/vtk/write_vtk.h"
 
 namespace patchlight {
+
+const char* version() { return PATCHLIGHT_VERSION; }
 
 const std::vector<std::string>& result_extensions() {
   static const std::vector<std::string> extensions = {".vtp", ".vtu", ".ply", ".glb"};

@@ -1,15 +1,65 @@
 #include "page/drawn_faces.h"
 
+#include "patchlight/views/picture.h"
+
 #include "light/photometry.h"
 #include "render/tone_map.h"
 #include "scene/triangulate.h"
+#include "views/surroundings.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <new>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <stdexcept>
+#include <zlib.h>
 
 namespace patchlight {
+namespace {
+
+std::string by_planes(std::string_view bytes, std::size_t width) {
+  const std::size_t count = bytes.size() / width;
+  std::string planes(bytes.size(), '\0');
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t byte = 0; byte < width; ++byte) planes[byte * count + k] = bytes[k * width + byte];
+  }
+  return planes;
+}
+
+std::string deflated(std::string_view bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string out(size, '\0');
+  const int error = compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                              bytes.size(), Z_DEFAULT_COMPRESSION);
+  // With as much room as zlib wants, nothing else can be wrong.
+  if (error != Z_OK) throw std::bad_alloc();
+  out.resize(size);
+  return out;
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+    std::uint32_t group = 0;
+    for (std::size_t byte = 0; byte < 3; ++byte)
+      group = group << 8 | (byte < count ? static_cast<std::uint8_t>(bytes[k + byte]) : 0U);
+    for (std::size_t letter = 0; letter < 4; ++letter)
+      text += letter <= count ? letters[group >> (18 - 6 * letter) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string packed_text(std::string_view bytes, std::size_t width) { return base64(deflated(by_planes(bytes, width))); }
+
 namespace {
 
 // One side of a polygon, and how it is drawn.
@@ -160,6 +210,90 @@ DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_
     if (!side.whole) draw_patches(drawn, surface.simulation, side.patches);
   }
   return without_unused(std::move(drawn));
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Colours = std::vector<std::array<std::uint8_t, 3>>;
+
+// Degrees above the horizon: sky and ground meet at it.
+constexpr std::array<double, 18> elevations = {-90, -60, -40, -25, -10, -0.1, 0.1, 4,  8,
+                                               13,  19,  26,  34,  43,  53,   64,  76, 90};
+constexpr int in_a_ring = 48;
+
+std::vector<Vector> directions_around(const Vector& up) {
+  const Vector across = up.unitOrthogonal();
+  const Vector ahead = up.cross(across);
+  std::vector<Vector> directions;
+  for (const double elevation : elevations) {
+    const double height = elevation * std::numbers::pi / 180;
+    for (int k = 0; k < in_a_ring; ++k) {
+      const double azimuth = 2 * std::numbers::pi * k / in_a_ring;
+      const Vector level = std::cos(azimuth) * ahead + std::sin(azimuth) * across;
+      directions.emplace_back(std::cos(height) * level + std::sin(height) * up);
+    }
+  }
+  return directions;
+}
+
+Json colours_part(const Colours& colours) {
+  const std::uint8_t* const first = colours.empty() ? nullptr : colours.front().data();
+  return packed_array<std::uint8_t>({first, 3 * colours.size()}, 3);
+}
+
+// Radiances, one row for each direction; no rows without a sky.
+Field radiance_of_sky(const SolvedSurface& surface) {
+  const auto sky = sky_of(surface.simulation);
+  if (!sky) return {};
+  const std::vector<Vector> directions = directions_around(surface.scene.up.normalized());
+  Field radiance(static_cast<Eigen::Index>(directions.size()), surface.simulation.solution.radiosity.cols());
+  for (Eigen::Index row = 0; row < radiance.rows(); ++row)
+    radiance.row(row) = sky(directions[static_cast<std::size_t>(row)]);
+  return radiance;
+}
+
+}  // namespace
+
+std::vector<Look> looks_of(const SolvedSurface& surface, double exposure) {
+  const Simulation& simulation = surface.simulation;
+  if (simulation.enclosed.size() == 0) return {{"natural", exposure}};
+  const Field radiance = display_radiance(simulation);
+  const Eigen::VectorXd inside = simulation.problem.area.cwiseProduct(simulation.enclosed);
+  const Eigen::VectorXd outside = simulation.problem.area - inside;
+  const auto is_lit = [&](const Eigen::VectorXd& weight) {
+    return ((radiance.rowwise().maxCoeff() > 0) && (weight.array() > 0)).any();
+  };
+  if (!is_lit(inside) || !is_lit(outside)) return {{"natural", exposure}};
+  const Bands bands = bands_of(surface.scene);
+  const Look of_inside{"natural, exposed for the inside", exposure_for(radiance, inside, bands)};
+  const Look of_outside{"natural, exposed for the outside", exposure_for(radiance, outside, bands)};
+  const auto ratio = [exposure](const Look& look) { return std::abs(std::log(exposure / look.exposure)); };
+  const bool for_inside = ratio(of_inside) <= ratio(of_outside);
+  if (for_inside) return {{of_inside.name, exposure}, of_outside};
+  return {{of_outside.name, exposure}, of_inside};
+}
+
+Json looks_part(const SolvedSurface& surface, double exposure, std::size_t most_faces) {
+  const Bands bands = bands_of(surface.scene);
+  const Field sky = radiance_of_sky(surface);
+  Json part = Json::array();
+  for (const Look& look : looks_of(surface, exposure)) {
+    Json entry{{"name", look.name}, {"exposure", look.exposure}};
+    entry["colours"] = colours_part(drawn_faces(surface, look.exposure, most_faces).colours);
+    if (sky.rows() > 0) entry["sky"] = colours_part(tone_map(sky, look.exposure, bands));
+    part.push_back(std::move(entry));
+  }
+  return part;
+}
+
+Json sky_directions(const SolvedSurface& surface) {
+  if (!surface.scene.sky) return nullptr;
+  std::vector<float> numbers;
+  for (const Vector& direction : directions_around(surface.scene.up.normalized())) {
+    for (const double coordinate : direction) numbers.push_back(static_cast<float>(coordinate));
+  }
+  return {{"in_a_ring", in_a_ring}, {"directions", packed_array<float>(numbers, 3)}};
 }
 
 }  // namespace patchlight

@@ -2,14 +2,14 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/doublings.h"
+#include "base/sampling.h"
 #include "base/vectors.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/problem_of.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
-#include "transport/bright_patches.h"
-#include "transport/row_blocks.h"
+#include "transport/ray_rows.h"
+#include "transport/row_tracer.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

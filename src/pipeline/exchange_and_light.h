@@ -2,7 +2,7 @@
 
 #include "lighting/direct_irradiance.h"
 #include "pipeline/lit_problem.h"
-#include "transport/ray_exchange.h"
+#include "transport/ray_transport.h"
 
 #include <Eigen/Core>
 #include <array>

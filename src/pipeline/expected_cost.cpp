@@ -10,7 +10,7 @@
 #include "pipeline/second_mesh.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
-#include "transport/cluster_pairs.h"
+#include "transport/pair_sampler.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 
 #include "patchlight/transport/lost_share.h"
 
-#include "mesh/kept_patches.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "visibility/tracing.h"

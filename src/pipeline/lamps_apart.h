@@ -2,8 +2,8 @@
 
 #include "lighting/direct_irradiance.h"
 #include "pipeline/run.h"
-#include "transport/lamp_pieces.h"
-#include "transport/ray_exchange.h"
+#include "transport/lamp_factors.h"
+#include "transport/ray_transport.h"
 
 #include <vector>
 

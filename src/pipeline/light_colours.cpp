@@ -1,6 +1,6 @@
 #include "pipeline/light_colours.h"
 
-#include "accuracy/interest.h"
+#include "accuracy/spaces.h"
 #include "light/photometry.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"

@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "lighting/mirrored_irradiance.h"
-#include "mesh/kept_patches.h"
 #include "mesh/small_patches.h"
 #include "pipeline/problem_of.h"
 #include "plan/goal.h"

@@ -1,7 +1,7 @@
 #include "pipeline/local_cuts.h"
 
 #include "accuracy/refinement.h"
-#include "base/doublings.h"
+#include "base/sampling.h"
 #include "mesh/small_patches.h"
 #include "pipeline/error_goals.h"
 #include "plan/goal.h"

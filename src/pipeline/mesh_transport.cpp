@@ -1,11 +1,10 @@
 #include "pipeline/mesh_transport.h"
 
 #include "accuracy/errors.h"
-#include "base/doublings.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "form_factor/patch_keys.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
@@ -15,11 +14,9 @@
 #include "solve/scattering.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
-#include "transport/merged.h"
-#include "transport/on_demand.h"
-#include "transport/ray_rate.h"
+#include "transport/pair_sampler.h"
+#include "transport/ray_rows.h"
 #include "transport/smoothing.h"
-#include "transport/weighed_rows.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "pipeline/problem_of.h"
 
-#include "mesh/other_sides.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/textured_patches.h"
 #include "plan/planned_scene.h"
 

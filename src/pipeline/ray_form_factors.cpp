@@ -5,8 +5,8 @@
 #include "pipeline/run.h"
 #include "pipeline/scene_in_patches.h"
 #include "plan/choose_storage.h"
+#include "transport/ray_rows.h"
 #include "transport/ray_transport.h"
-#include "transport/weighed_rows.h"
 
 #include <utility>
 

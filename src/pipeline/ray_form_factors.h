@@ -3,7 +3,7 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/scene/scene.h"
 
-#include "transport/ray_exchange.h"
+#include "transport/ray_transport.h"
 
 #include <Eigen/Core>
 

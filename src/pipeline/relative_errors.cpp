@@ -3,7 +3,6 @@
 #include "patchlight/accuracy/error_bars.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/interest.h"
 #include "accuracy/spaces.h"
 #include "base/vectors.h"
 #include "solve/scattering.h"

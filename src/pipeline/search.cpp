@@ -2,10 +2,9 @@
 
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
-#include "base/doublings.h"
 #include "base/parallel.h"
+#include "base/sampling.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/refine.h"
 #include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"

@@ -4,8 +4,8 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/lost_share.h"
 
-#include "accuracy/enclosed.h"
 #include "accuracy/errors.h"
+#include "accuracy/spaces.h"
 #include "base/vectors.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/notes_on_run.h"

@@ -3,16 +3,13 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "accuracy/errors.h"
-#include "accuracy/errors_within_parents.h"
-#include "accuracy/interest.h"
-#include "accuracy/needed_bands.h"
 #include "accuracy/refinement.h"
+#include "accuracy/spaces.h"
 #include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "mesh/kept_patches.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/refine.h"
+#include "mesh/small_patches.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
@@ -22,8 +19,6 @@
 #include "plan/goal.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
-#include "transport/merged.h"
-#include "transport/on_demand.h"
 
 #include <algorithm>
 #include <array>

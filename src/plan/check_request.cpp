@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "accuracy/interest.h"
+#include "accuracy/spaces.h"
 
 #include <initializer_list>
 #include <vector>

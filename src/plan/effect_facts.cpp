@@ -3,7 +3,7 @@
 #include "light/texture.h"
 #include "scene/solids.h"
 #include "scene/transmittance.h"
-#include "visibility/convex_hull.h"
+#include "visibility/flat_polygon.h"
 
 #include <algorithm>
 #include <cmath>

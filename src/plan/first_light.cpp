@@ -1,6 +1,6 @@
 #include "plan/first_light.h"
 
-#include "base/shell_word.h"
+#include "base/near_match.h"
 #include "plan/first_few.h"
 #include "plan/lamp_names.h"
 #include "scene/sealed_room.h"

@@ -5,7 +5,7 @@
 #include "patchlight/scene/sides.h"
 
 #include "mesh/mesher.h"
-#include "mesh/patch_edges.h"
+#include "mesh/outline.h"
 #include "mesh/patch_lookup.h"
 #include "scene/coverings.h"
 

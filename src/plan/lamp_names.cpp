@@ -1,6 +1,6 @@
 #include "plan/lamp_names.h"
 
-#include "base/lower_case.h"
+#include "base/near_match.h"
 
 #include <algorithm>
 #include <array>

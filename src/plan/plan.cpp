@@ -4,8 +4,8 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
-#include "mesh/coarse_outline.h"
 #include "mesh/mesher.h"
+#include "mesh/outline.h"
 #include "plan/check_request.h"
 #include "plan/choose_storage.h"
 #include "plan/decide.h"

@@ -4,7 +4,6 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
-#include "base/shortest.h"
 #include "light/photometry.h"
 #include "plan/first_few.h"
 #include "scene/box_row.h"

@@ -6,7 +6,7 @@
 #include "cli/arguments.h"
 #include "cli/solve_input.h"
 #include "mesh/nested_mesh.h"
-#include "output/report/write_plan.h"
+#include "output/report/write_survey.h"
 #include "pipeline/expected_cost.h"
 #include "pipeline/first_mesh.h"
 #include "plan/check_request.h"

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "render/pixel_samples.h"
+#include "render/lens.h"
 
 #include <vector>
 

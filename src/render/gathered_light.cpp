@@ -3,12 +3,14 @@
 #include "base/sampling.h"
 #include "light/texture.h"
 #include "lighting/mirrored_irradiance.h"
-#include "render/hemisphere.h"
-#include "render/pixel_samples.h"
-#include "render/sky_samples.h"
+#include "render/lens.h"
+#include "render/light_samples.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -16,6 +18,219 @@
 #include <utility>
 
 namespace patchlight {
+
+Hemisphere::Hemisphere(int rays, const Vector& normal)
+    : rings_(std::max(1, static_cast<int>(std::lround(std::sqrt(rays / std::numbers::pi))))),
+      sectors_(std::max(3, static_cast<int>(std::lround(static_cast<double>(rays) / rings_)))),
+      normal_(normal),
+      first_(normal.unitOrthogonal()),
+      second_(normal.cross(first_)) {}
+
+std::size_t Hemisphere::cell(int ring, int sector) const {
+  const int around = (sector + sectors_) % sectors_;
+  return static_cast<std::size_t>(ring) * static_cast<std::size_t>(sectors_) + static_cast<std::size_t>(around);
+}
+
+double Hemisphere::sine(int ring) const { return std::sqrt(static_cast<double>(ring) / rings_); }
+
+std::vector<Vector> Hemisphere::directions(std::uint32_t seed) const {
+  std::vector<Vector> all;
+  for (int j = 0; j < rings_; ++j) {
+    for (int k = 0; k < sectors_; ++k) {
+      const auto u = pixel_sample(static_cast<std::uint32_t>(cell(j, k)), seed);
+      const double square = (j + u[0]) / rings_;  // sin^2
+      const double angle = 2 * std::numbers::pi * (k + u[1]) / sectors_;
+      const double sine_here = std::sqrt(square);
+      all.push_back(sine_here * (std::cos(angle) * first_ + std::sin(angle) * second_) +
+                    std::sqrt(1 - square) * normal_);
+    }
+  }
+  return all;
+}
+
+HemisphereIrradiance Hemisphere::irradiance(const FieldView& radiosity, std::span<const double> distances) const {
+  const Eigen::Index bands = radiosity.cols();
+  const auto row = [&](int j, int k) { return radiosity.row(static_cast<Eigen::Index>(cell(j, k))); };
+  const auto nearer = [&](int j, int k, int jj, int kk) {
+    return std::min(distances[cell(j, k)], distances[cell(jj, kk)]);
+  };
+  HemisphereIrradiance found{radiosity.colwise().mean(), Spectrum::Zero(bands), Field::Zero(3, bands)};
+  for (int k = 0; k < sectors_; ++k) {
+    const double middle = 2 * std::numbers::pi * (k + 0.5) / sectors_;
+    const double edge = 2 * std::numbers::pi * k / sectors_;
+    const Vector outward = std::cos(middle) * first_ + std::sin(middle) * second_;
+    const Vector along = -std::sin(edge) * first_ + std::cos(edge) * second_;
+    Spectrum by_rings = Spectrum::Zero(bands);
+    Spectrum by_sectors = Spectrum::Zero(bands);
+    for (int j = 0; j < rings_; ++j) {
+      // With L = B / pi
+      if (j > 0) {
+        const double square = sine(j) * sine(j);
+        const double factor = 2 * std::numbers::pi / sectors_ * sine(j) * (1 - square) / nearer(j, k, j - 1, k);
+        by_rings += factor / std::numbers::pi * (row(j, k) - row(j - 1, k));
+      }
+      const double width = (sine(j + 1) - sine(j)) / nearer(j, k, j, k - 1);
+      by_sectors += width / std::numbers::pi * (row(j, k) - row(j, k - 1));
+      // Two neighbours differ by twice the variance within a cell, and by what the light changes from one to the other.
+      found.variance += (row(j, k) - row(j, k - 1)).square() / 2;
+    }
+    found.gradient += (outward * by_rings.matrix() + along * by_sectors.matrix()).array();
+  }
+  const double count = static_cast<double>(rings_) * sectors_;
+  found.variance /= count * count;
+  return found;
+}
+
+double Hemisphere::harmonic_mean(std::span<const double> distances) const {
+  double sum = 0;
+  for (const double distance : distances) sum += 1 / distance;
+  return static_cast<double>(distances.size()) / sum;
+}
+
+namespace {
+
+// Records serve at normals up to this angle from theirs, and up to this share of their radius before or behind their
+// plane: a table's top has nothing to tell of its lower side, nor of the floor.
+constexpr double widest_turn = 0.985;   // cosine of 10 degrees
+constexpr double widest_offset = 0.15;  // 10 degrees over the radius of curved surfaces
+
+// How fast radii may grow with the distance from a record.
+constexpr double growth_of_radius = 0.4;
+
+using Cell = std::array<std::int64_t, 3>;
+
+Cell cell_of(const Point& point, double cells_per_metre) {
+  Cell cell{};
+  for (int axis = 0; axis < 3; ++axis)
+    cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(point[axis] * cells_per_metre));
+  return cell;
+}
+
+// Cells that share a key are looked at together, which costs time alone.
+std::uint64_t key_of(const Cell& cell, int level) {
+  std::uint64_t key = static_cast<std::uint64_t>(level) + 1024;
+  for (const std::int64_t c : cell) {
+    key = (key ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15U;
+    key ^= key >> 29;
+  }
+  return key;
+}
+
+}  // namespace
+
+double IrradianceCache::weight_of(const Reach& record, const Point& point, const Vector& normal) {
+  const Vector way = point - record.point;
+  const double square = way.squaredNorm();
+  if (!(square < record.radius * record.radius)) return 0;
+  const double cosine = normal.dot(record.normal);
+  if (!(cosine > widest_turn)) return 0;
+  if (std::abs(record.normal.dot(way)) > widest_offset * record.radius) return 0;
+  const double turn = std::sqrt(std::max(0.0, 1 - cosine) / (1 - widest_turn));
+  return 1 - std::max(std::sqrt(square) / record.radius, turn);
+}
+
+template <typename See>
+void IrradianceCache::for_each_around(const Point& point, const Vector& normal, const See& see) const {
+  for (const Level& level : levels_) {
+    const auto cell = cells_.find(key_of(cell_of(point, level.cells_per_metre), level.log2_of_edge));
+    if (cell == cells_.end()) continue;
+    for (const std::uint32_t index : cell->second) {
+      const double weight = weight_of(reaches_[index], point, normal);
+      if (weight > 0) see(index, weight);
+    }
+  }
+}
+
+std::vector<IrradianceCache::Weighted> IrradianceCache::around(const Point& point, const Vector& normal) const {
+  std::vector<Weighted> found;
+  for_each_around(point, normal, [&](std::uint32_t index, double weight) { found.push_back({index, weight}); });
+  return found;
+}
+
+IrradianceCache::IrradianceCache(Eigen::VectorXd luminous_weights) : luminous_weights_(std::move(luminous_weights)) {}
+
+// Cells at least as wide as the ball of the record: it meets eight of them at most.
+IrradianceCache::Level IrradianceCache::level_for(double radius) {
+  const int log2_of_edge = static_cast<int>(std::ceil(std::log2(2 * radius)));
+  const auto has_it = [&](const Level& level) { return level.log2_of_edge == log2_of_edge; };
+  const auto known = std::find_if(levels_.begin(), levels_.end(), has_it);
+  if (known != levels_.end()) return *known;
+  levels_.push_back({log2_of_edge, std::ldexp(1.0, -log2_of_edge)});
+  return levels_.back();
+}
+
+void IrradianceCache::add(const IrradianceRecord& record) {
+  assert(record.irradiance.size() == luminous_weights_.size() && record.gradient.cols() == record.irradiance.size());
+  const Level level = level_for(record.radius);
+  const auto index = static_cast<std::uint32_t>(reaches_.size());
+  reaches_.push_back({record.point, record.normal, record.radius, record.uncertainty});
+  for (Eigen::Index band = 0; band < record.irradiance.size(); ++band) {
+    values_.push_back(record.irradiance[band]);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) values_.push_back(record.gradient(axis, band));
+  }
+  const Vector reach = Vector::Constant(record.radius);
+  const Cell lower = cell_of(record.point - reach, level.cells_per_metre);
+  const Cell upper = cell_of(record.point + reach, level.cells_per_metre);
+  for (std::int64_t x = lower[0]; x <= upper[0]; ++x)
+    for (std::int64_t y = lower[1]; y <= upper[1]; ++y)
+      for (std::int64_t z = lower[2]; z <= upper[2]; ++z)
+        cells_[key_of({x, y, z}, level.log2_of_edge)].push_back(index);
+}
+
+void IrradianceCache::add_graded(const std::vector<IrradianceRecord>& records) {
+  const std::size_t before = reaches_.size();
+  for (const IrradianceRecord& record : records) add(record);
+  // Cells keep records whose radius shrinks, which no longer serve there.
+  for (std::size_t k = before; k < reaches_.size(); ++k) {
+    Reach& record = reaches_[k];
+    for (const Weighted& one : around(record.point, record.normal)) {
+      Reach& other = reaches_[one.index];
+      const double distance = (other.point - record.point).norm();
+      other.radius = std::min(other.radius, record.radius + growth_of_radius * distance);
+      record.radius = std::min(record.radius, other.radius + growth_of_radius * distance);
+    }
+  }
+}
+
+double IrradianceCache::weight_at(const Point& point, const Vector& normal) const {
+  double sum = 0;
+  for_each_around(point, normal, [&](std::uint32_t, double weight) { sum += weight; });
+  return sum;
+}
+
+std::optional<CachedIrradiance> IrradianceCache::at(const Point& point, const Vector& normal) const {
+  const Eigen::Index bands = luminous_weights_.size();
+  CachedIrradiance found{Spectrum::Zero(bands), 0};
+  double weights = 0, squares = 0, own = 0, first = 0, second = 0;
+  for_each_around(point, normal, [&](std::uint32_t index, double weight) {
+    // E_i + (x - x_i) . grad E_i
+    const Reach& record = reaches_[index];
+    const Vector way = point - record.point;
+    const double* of_band = values_.data() + static_cast<std::size_t>(index) * static_cast<std::size_t>(4 * bands);
+    double value = 0;
+    for (Eigen::Index band = 0; band < bands; ++band, of_band += 4) {
+      const double change = way.x() * of_band[1] + way.y() * of_band[2] + way.z() * of_band[3];
+      const double predicted = std::max(0.0, of_band[0] + change);
+      found.irradiance[band] += weight * predicted;
+      value += predicted * luminous_weights_[band];
+    }
+    weights += weight;
+    squares += weight * weight;
+    own += weight * weight * record.uncertainty * record.uncertainty;
+    first += weight * value;
+    second += weight * value * value;
+  });
+  if (weights == 0) return std::nullopt;
+  // By what records differ, with as many degrees of freedom as records of equal weight would have.
+  const double mean = first / weights;
+  const double scatter = std::max(0.0, second / weights - mean * mean);
+  const double freedom = std::max(0.5, weights * weights / squares - 1);
+  const double variance = own / (weights * weights) + scatter / freedom;
+  found.irradiance /= weights;
+  found.deviation = std::sqrt(variance);
+  return found;
+}
+
 namespace {
 
 // A record serves up to this share of the harmonic mean distance of what is around it.

@@ -2,17 +2,64 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "render/pixel_samples.h"
-#include "render/sky_samples.h"
+#include "lighting/sky.h"
+#include "render/lens.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
+namespace {
+
+// The part of `vector` at right angles to a unit `axis`, of length 1.
+Vector across(const Vector& vector, const Vector& axis) { return (vector - vector.dot(axis) * axis).normalized(); }
+
+}  // namespace
+
+SphericalTriangle::SphericalTriangle(const Point& from, const std::array<Point, 3>& corners)
+    : a_((corners[0] - from).normalized()), b_((corners[1] - from).normalized()), c_((corners[2] - from).normalized()) {
+  if (a_.dot(b_.cross(c_)) < 0) std::swap(b_, c_);
+  ab_ = a_.cross(b_);
+  bc_ = b_.cross(c_);
+  ca_ = c_.cross(a_);
+  // tan(omega / 2) = a . (b x c) / (1 + a.b + b.c + c.a): Van Oosterom and Strackee 1983, eq. 8
+  solid_angle_ = std::max(0.0, 2 * std::atan2(a_.dot(bc_), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_)));
+}
+
+Vector SphericalTriangle::direction(double u, double v) const {
+  // The angle at a
+  const Vector to_b = across(b_, a_), to_c = across(c_, a_);
+  const double cosine = std::clamp(to_b.dot(to_c), -1.0, 1.0), sine = to_b.cross(to_c).norm();
+  const double alpha = std::atan2(sine, cosine);
+  // The part of the triangle on b's side of the great circle through b and c' has u of its area.
+  const double phi = u * solid_angle_ - alpha;
+  const double s = std::sin(phi), t = std::cos(phi);
+  const double p = t - cosine;
+  const double q = s + sine * a_.dot(b_);
+  const double below = (q * s + p * t) * sine;
+  const double along = below == 0 ? 1 : std::clamp(((q * t - p * s) * cosine - q) / below, -1.0, 1.0);
+  const Vector c = along * a_ + std::sqrt(1 - along * along) * to_c;
+  const double z = 1 - v * (1 - c.dot(b_));
+  const Vector side = c - c.dot(b_) * b_;
+  if (!(side.norm() > 0)) return b_;
+  return (z * b_ + std::sqrt(std::max(0.0, 1 - z * z)) * side.normalized()).normalized();
+}
+
+bool SphericalTriangle::contains(const Vector& direction) const {
+  return direction.dot(ab_) >= 0 && direction.dot(bc_) >= 0 && direction.dot(ca_) >= 0;
+}
+
+double SphericalTriangle::mean_cosine(const Vector& normal) const {
+  return (std::max(0.0, normal.dot(a_)) + std::max(0.0, normal.dot(b_)) + std::max(0.0, normal.dot(c_))) / 3;
+}
+
 namespace {
 
 // So many lamps or luminaires get rays each; of more, some are chosen for each point.
@@ -220,6 +267,157 @@ Field light_samples(const Lights& lights, std::span<const LitPoint> points, std:
 
   if (lighting.sky) irradiance += sky_samples(lighting, points, rays);
   return irradiance;
+}
+
+namespace {
+
+// Each point looks at so many triangles, to know how much of its hemisphere they fill.
+constexpr std::size_t most_triangles = 32;
+
+// What is seen as smaller than this, sr, is left to rays over the hemisphere.
+constexpr double least_solid_angle = 1e-8;
+
+// Seeds of the two kinds of rays of a point.
+enum SkyPurpose : std::uint32_t { to_openings = 21, over_hemisphere };
+
+// A triangle of an opening as a point sees it, and how probable it is for a ray.
+struct Target {
+  SphericalTriangle triangle;
+  double probability = 0;
+};
+
+// A ray to the sky. What arrives is `factor` times the radiance there and the share that gets through.
+struct SkyRay {
+  std::size_t point = 0;
+  Vector direction;
+  double factor = 0;
+  bool is_aimed = false;
+};
+
+// The rays of all points, and where they aim.
+class SkySampler {
+ public:
+  SkySampler(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays)
+      : lighting_(lighting), points_(points), count_(rays), begin_(points.size() + 1, 0) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (points[k].aim != nullptr) add(k);
+      begin_[k + 1] = targets_.size();
+    }
+  }
+
+  Field irradiance() const;
+
+ private:
+  void add(std::size_t index);
+  void add_targets(std::size_t index);
+  void add_ray(std::size_t index, const Vector& direction, std::uint32_t of_so_many, bool is_aimed);
+  const Target& chosen(std::size_t index, double& u) const;
+  double density(std::size_t index, const Vector& direction) const;
+
+  const Lighting& lighting_;
+  std::span<const LitPoint> points_;
+  std::uint32_t count_;
+  std::vector<Target> targets_;     // point after point
+  std::vector<std::size_t> begin_;  // of each point's
+  std::vector<SkyRay> rays_;
+  std::vector<Segment> segments_;
+};
+
+// As often as a triangle fills the hemisphere, about, with its cosine.
+void SkySampler::add_targets(std::size_t index) {
+  const SurfacePoint& at = points_[index].at;
+  const std::vector<double>& probabilities = points_[index].aim->probabilities;
+  double sum = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    for (const std::array<Point, 3>& corners : lighting_.openings[k].triangles) {
+      const SphericalTriangle triangle(at.point, corners);
+      const double weight = triangle.solid_angle() * triangle.mean_cosine(at.normal);
+      if (!(weight > least_solid_angle)) continue;
+      targets_.push_back({triangle, weight});
+      sum += weight;
+    }
+  }
+  for (std::size_t k = begin_[index]; k < targets_.size(); ++k) targets_[k].probability /= sum;
+}
+
+// The one that a number of [0, 1) falls into; leaves where in it.
+const Target& SkySampler::chosen(std::size_t index, double& u) const {
+  std::size_t k = begin_[index];
+  for (; k + 1 < targets_.size() && u >= targets_[k].probability; ++k) u -= targets_[k].probability;
+  u = std::min(1.0, u / targets_[k].probability);
+  return targets_[k];
+}
+
+// Of the rays to openings, 1/sr.
+double SkySampler::density(std::size_t index, const Vector& direction) const {
+  double sum = 0;
+  for (std::size_t k = begin_[index]; k < begin_[index + 1]; ++k) {
+    const Target& target = targets_[k];
+    if (target.triangle.contains(direction)) sum += target.probability / target.triangle.solid_angle();
+  }
+  return sum;
+}
+
+void SkySampler::add_ray(std::size_t index, const Vector& direction, std::uint32_t of_so_many, bool is_aimed) {
+  const SurfacePoint& at = points_[index].at;
+  const double cosine = at.normal.dot(direction);
+  if (!(cosine > 0)) return;
+  // L cos over the density, which those to openings take once what they meet is known
+  rays_.push_back({index, direction, (is_aimed ? cosine : std::numbers::pi) / of_so_many, is_aimed});
+  segments_.push_back({at.point, lighting_.paths.beyond(at.point, direction), at.polygon, no_polygon});
+}
+
+void SkySampler::add(std::size_t index) {
+  const LitPoint& point = points_[index];
+  if (!point.aim->probabilities.empty()) add_targets(index);
+  const std::uint32_t aimed = targets_.size() == begin_[index] ? 0 : std::max(1U, count_ - 1);
+  for (std::uint32_t k = 0; k < aimed; ++k) {
+    auto u = pixel_sample(point.sample * aimed + k, hash({point.seed, to_openings}));
+    add_ray(index, chosen(index, u[0]).triangle.direction(u[0], u[1]), aimed, true);
+  }
+  const std::uint32_t others = std::max(1U, count_ - aimed);
+  for (std::uint32_t k = 0; k < others; ++k) {
+    const auto u = pixel_sample(point.sample * others + k, hash({point.seed, over_hemisphere}));
+    add_ray(index, cosine_direction(point.at.normal, u[0], u[1]), others, false);
+  }
+}
+
+Field SkySampler::irradiance() const {
+  Field sum = Field::Zero(static_cast<Eigen::Index>(points_.size()), lighting_.bands);
+  const Field through = lighting_.paths.transmittance(segments_);
+  for (std::size_t k = 0; k < rays_.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    if (!(through.row(row) > 0).any()) continue;
+    const SkyRay& ray = rays_[k];
+    // What gets in through openings is the business of the rays that go there, all else that of the others: where all
+    // light comes through openings, those over the hemisphere add no noise.
+    const double aimed = density(ray.point, ray.direction);
+    if (ray.is_aimed != (aimed > 0)) continue;
+    const double factor = ray.is_aimed ? ray.factor / aimed : ray.factor;
+    sum.row(static_cast<Eigen::Index>(ray.point)) +=
+        factor * radiance(*lighting_.sky, ray.direction) * through.row(row);
+  }
+  return sum;
+}
+
+}  // namespace
+
+SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings) {
+  std::vector<std::size_t> order(aim.probabilities.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return aim.probabilities[a] > aim.probabilities[b]; });
+  std::size_t triangles = 0;
+  for (const std::size_t k : order) {
+    triangles += openings[k].triangles.size();
+    if (triangles > most_triangles) aim.probabilities[k] = 0;
+  }
+  return aim;
+}
+
+Field sky_samples(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays) {
+  return SkySampler(lighting, points, rays).irradiance();
 }
 
 }  // namespace patchlight

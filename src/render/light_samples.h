@@ -1,16 +1,42 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/base/geometry.h"
 
 #include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
 #include "lighting/sky_irradiance.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace patchlight {
+
+/// A triangle as it is seen from a point.
+class SphericalTriangle {
+ public:
+  SphericalTriangle(const Point& from, const std::array<Point, 3>& corners);
+
+  /// sr; 0 where it is seen from its edge.
+  double solid_angle() const { return solid_angle_; }
+
+  /// Uniformly distributed in its solid angle, for (u, v) of the unit square: Arvo 1995, Stratified Sampling of
+  /// Spherical Triangles. The solid angle must be above 0.
+  Vector direction(double u, double v) const;
+
+  /// True when a direction goes through it.
+  bool contains(const Vector& direction) const;
+
+  /// The mean over its corners of the cosines to a normal, 0 for those below the horizon: about that of its directions.
+  double mean_cosine(const Vector& normal) const;
+
+ private:
+  Vector a_, b_, c_;     // unit, counter-clockwise
+  Vector ab_, bc_, ca_;  // across its edges, inwards
+  double solid_angle_ = 0;
+};
 
 /// What gives light straight to points.
 struct Lights {
@@ -30,5 +56,14 @@ struct LitPoint {
 /// W/m^2 per band; its mean over all samples is the irradiance. `rays` go to lamps, 2 or more, and as many to
 /// luminaires, which choose among these, or to each one if there are few; one to the sun, and `rays` to the sky.
 Field light_samples(const Lights& lights, std::span<const LitPoint> points, std::uint32_t rays);
+
+/// An aim at its most probable openings, as each point looks at all triangles of these; others are left to rays over
+/// the hemisphere.
+SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings);
+
+/// One estimate of the irradiance of each point (row) by sky and ground, W/m^2 per band; its mean over all samples is
+/// the irradiance. There must be a sky. `rays` go from each point that has an aim: all but one to openings, where its
+/// aim has any, and others over the hemisphere for what comes from elsewhere.
+Field sky_samples(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays);
 
 }  // namespace patchlight

@@ -6,8 +6,8 @@
 #include "base/sampling.h"
 #include "mesh/patch_lookup.h"
 #include "render/gathered_light.h"
-#include "render/lightmap_padding.h"
-#include "render/pixel_samples.h"
+#include "render/lens.h"
+#include "render/lightmap_charts.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Geometry>

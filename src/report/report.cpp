@@ -3,7 +3,7 @@
 #include "accuracy/errors.h"
 #include "report/room_light.h"
 #include "solve/scattering.h"
-#include "transport/worst_rows.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "scene/band_choice.h"
 
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
 

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/shortest.h"
+#include "base/rounded.h"
 #include "light/texture.h"
 
 #include <cmath>

@@ -4,15 +4,89 @@
 
 #include "base/parallel.h"
 #include "base/vectors.h"
+#include "solve/bounds.h"
 #include "solve/scattering.h"
-#include "solve/spectral_radius.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 namespace patchlight {
+namespace {
+
+constexpr Eigen::Index most_groups = 64;
+
+}  // namespace
+
+CoarseTransport::CoarseTransport(const RadiosityProblem& problem)
+    : problem_(problem),
+      patches_(problem.area.size()),
+      groups_(std::min(most_groups, patches_)),
+      arriving_(Eigen::MatrixXf::Zero(patches_, groups_)),
+      arrived_(Eigen::VectorXd::Zero(groups_)),
+      area_(Eigen::VectorXd::Zero(groups_)) {}
+
+void CoarseTransport::learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving) {
+  // A row of F is the same in all bands: the strongest one tells it best.
+  Eigen::Index band = 0;
+  if (!(shot_radiosity.row(0).abs().maxCoeff(&band) > 0)) return;
+  const Eigen::VectorXd row = arriving.col(band) / shot_radiosity(0, band);
+  const Eigen::Index group = group_of(source);
+  arriving_.col(group) += row.cast<float>();
+  arrived_[group] += scalar_product(problem_.area, row);
+  area_[group] += problem_.area[source];
+}
+
+Eigen::Index CoarseTransport::next_source(const Field& waiting) const {
+  const Eigen::ArrayXd flux = waiting.abs().rowwise().sum() * problem_.area.array();
+  Eigen::VectorXd of_unknown = Eigen::VectorXd::Zero(groups_);
+  for (Eigen::Index i = 0; i < patches_; ++i) {
+    if (area_[group_of(i)] == 0) of_unknown[group_of(i)] += flux[i];
+  }
+  Eigen::Index group = 0;
+  const bool is_known = !(of_unknown.maxCoeff(&group) > 0);
+  Eigen::Index source = 0;
+  double most = -1;
+  for (Eigen::Index i = 0; i < patches_; ++i) {
+    if (!(flux[i] > most) || (!is_known && group_of(i) != group)) continue;
+    most = flux[i];
+    source = i;
+  }
+  return source;
+}
+
+Field CoarseTransport::ambient(const Field& unshot) const {
+  // 1. Q_ig, the irradiance at patch i by unit flux of group g, is (arriving_ig + even) / weight_g. No more than all
+  //    light arrives, sum_i A_i Q_ig <= 1, whatever the errors of the rows.
+  const double mean_area = total(problem_.area) / static_cast<double>(patches_);
+  const double arrived_share = total(area_) > 0 ? std::min(1.0, total(arrived_) / total(area_)) : 1;
+  const double even = arrived_share / static_cast<double>(patches_);
+  const Eigen::VectorXd weight = (area_.array() + mean_area).max(arrived_.array() + mean_area * arrived_share).matrix();
+
+  const Field sent_back = problem_.scattering.reflect(problem_.area.array().replicate(1, unshot.cols()));  // A_i rho_i
+  Field irradiance = Field::Zero(unshot.rows(), unshot.cols());
+  for (Eigen::Index band = 0; band < unshot.cols(); ++band) {
+    // 2. Flux of group h by unit flux of group g: T_hg = sum_i A_i rho_i Q_ig over the patches i of h.
+    Eigen::VectorXd U = Eigen::VectorXd::Zero(groups_);
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(groups_, groups_);
+    for (Eigen::Index i = 0; i < patches_; ++i) {
+      U[group_of(i)] += problem_.area[i] * unshot(i, band);
+      T.row(group_of(i)) += sent_back(i, band) * (arriving_.row(i).cast<double>().array() + even).matrix();
+    }
+    T.array().rowwise() /= weight.array().transpose();
+    if (T.colwise().sum().maxCoeff() >= 1) continue;
+
+    // 3. With all reflections the flux is (I - T)^-1 U; Q takes it to the patches.
+    const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(groups_, groups_);
+    const Eigen::VectorXd flux = (I - T).partialPivLu().solve(U).cwiseQuotient(weight);
+    irradiance.col(band) = (arriving_ * flux.cast<float>()).cast<double>().array() + even * total(flux);
+  }
+  return irradiance;
+}
+
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
@@ -211,6 +285,125 @@ Solution Iterations::finish() {
     solution.patch_bound = std::max(solution.patch_bound, ratio(error[band], reflected[band]));
   }
   return solution;
+}
+
+namespace {
+
+enum class Order { forward, backward };
+
+// B_i <- B_i + relaxation (E_i + rho_i H_i - B_i), patch by patch.
+Relax relaxing(const RadiosityProblem& problem, double relaxation, Order order) {
+  return [&problem, relaxation, order](const SweptPatches& patches) -> Field {
+    const Eigen::Index rows = patches.radiosity.rows();
+    Field change = Field::Zero(rows, patches.radiosity.cols());
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const Eigen::Index r = order == Order::forward ? k : rows - 1 - k;
+      const Eigen::Index i = patches.range.begin + r;
+      // The irradiance is by the old radiosities of these patches: add what those before have changed since.
+      const Field H = patches.irradiance.row(r) + (patches.own_form_factors.row(r) * change.matrix()).array();
+      change.row(r) =
+          relaxation * (problem.exitance.row(i) + reflect_at(problem.scattering, i, H) - patches.radiosity.row(r));
+    }
+    return patches.radiosity + change;
+  };
+}
+
+// Sweeps from the first patch to the last. A sweep also finds F B of what it starts from: iterate k is measured in
+// sweep k + 1.
+Solution swept(Iterations iterations, const RowTransport& transport, double relaxation) {
+  const RadiosityProblem& problem = iterations.problem();
+  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
+  const Relax relax = relaxing(problem, relaxation, Order::forward);
+  Sweep sweep = transport.sweep({problem.exitance, {}, {}}, relax, {});
+  iterations.count(1);
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    Field B = sweep.radiosity;
+    sweep = transport.sweep(std::move(sweep), relax, {});
+    iterations.count(1);
+    Field H = sweep.irradiance.size() > 0 ? std::move(sweep.irradiance) : iterations.apply(B);
+    iterations.record(iterate_of(problem, std::move(B), std::move(H)), k);
+  }
+  return iterations.finish();
+}
+
+}  // namespace
+
+Solution jacobi(Iterations iterations) {
+  const RadiosityProblem& problem = iterations.problem();
+  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
+  Field H = iterations.direct_irradiance();
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    Field B = radiosity_from(problem, H);
+    iterations.show_irradiance(std::move(H));
+    H = iterations.apply(B);
+    iterations.record(iterate_of(problem, std::move(B), H), k);
+  }
+  return iterations.finish();
+}
+
+Solution gauss_seidel(Iterations iterations, const RowTransport& transport) {
+  return swept(std::move(iterations), transport, 1);
+}
+
+Solution sor(Iterations iterations, const RowTransport& transport) {
+  const std::optional<double>& given = iterations.options().relaxation;
+  if (given) return swept(std::move(iterations), transport, *given);
+  // A few steps are enough: the factor hardly depends on the third digit.
+  constexpr int steps = 5;
+  const double radius = largest(iterations.spectral_radius(steps));
+  return swept(std::move(iterations), transport, relaxation_for(radius));
+}
+
+Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& transport) {
+  const RadiosityProblem& problem = iterations.problem();
+  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
+  const Relax there = relaxing(problem, 1, Order::forward);
+  const Relax back = relaxing(problem, 1, Order::backward);
+  Field B = problem.exitance;
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    B = transport.sweep({std::move(B), {}, {}}, there, back).radiosity;
+    iterations.count(2);
+    iterations.record(iterate_of(problem, B, iterations.apply(B)), k);
+  }
+  return iterations.finish();
+}
+
+// Golub and Varga 1961: x_k+1 = x_k-1 + omega_k+1 (r_k + x_k - x_k-1), the polynomials that are least on
+// [-bound, bound]. All steps are taken on B and F B at once, by linearity.
+Solution chebyshev(Iterations iterations) {
+  const RadiosityProblem& problem = iterations.problem();
+  constexpr int steps = 20;
+  const Eigen::ArrayXd bound =
+      iterations.bounds().contracts() ? iterations.bounds().contraction : iterations.spectral_radius(steps);
+  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
+  Field B = problem.exitance;
+  Field before = B;
+  Field H = iterations.direct_irradiance();
+  Eigen::ArrayXd omega = Eigen::ArrayXd::Ones(bound.size());
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    if (k == 2) omega = 1 / (1 - bound.square() / 2);
+    if (k > 2) omega = 1 / (1 - bound.square() * omega / 4);
+    // E + K B_k, between that and B_k-1
+    const Field next = before + scaled(radiosity_from(problem, H) - before, omega);
+    before = std::move(B);
+    B = next;
+    H = iterations.apply(B);
+    iterations.record(iterate_of(problem, B, H), k);
+  }
+  return iterations.finish();
+}
+
+double relaxation_for(double radius) {
+  assert(radius >= 0);
+  // ln(omega - 1) = omega radius (omega - 2) / (2 (omega - 1)), with the left side above the right below the root.
+  double low = 1;
+  double high = 2;
+  for (int k = 0; k < 60; ++k) {
+    const double omega = (low + high) / 2;
+    const bool below = std::log(omega - 1) * 2 * (omega - 1) > omega * std::min(radius, 1.0) * (omega - 2);
+    (below ? low : high) = omega;
+  }
+  return low;
 }
 
 }  // namespace patchlight

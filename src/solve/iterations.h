@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/solve/problem.h"
 #include "patchlight/solve/solve.h"
 
 #include "solve/bounds.h"
@@ -9,6 +10,37 @@
 #include <limits>
 
 namespace patchlight {
+
+/// What the rows of F that have been taken so far tell about all of it: where the light of groups of patches arrives.
+/// Patches that follow each other make a group, as they mostly lie side by side; there are at most 64, so that memory
+/// stays in proportion to the patches. For display and for the order of shots: nothing here changes a solution.
+class CoarseTransport {
+ public:
+  explicit CoarseTransport(const RadiosityProblem& problem);
+
+  /// The irradiance everywhere, `arriving`, by the radiosity `shot_radiosity` of one patch; one row per patch, and one
+  /// row.
+  void learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving);
+
+  /// The patch that shoots next when `waiting` is to be shot, W/m^2: the one with the most flux, summed over the bands.
+  /// Before that, each group that has any shoots once, the one with the most flux first.
+  Eigen::Index next_source(const Field& waiting) const;
+
+  /// The irradiance that unshot radiosity and all its reflections are going to add, one row per patch. A group's light
+  /// is taken to arrive where that of its known rows does, and evenly everywhere to the weight of one more row; as much
+  /// of that gets lost as of all light so far. 0 in bands where by this light is never lost.
+  Field ambient(const Field& unshot) const;
+
+ private:
+  Eigen::Index group_of(Eigen::Index patch) const { return patch * groups_ / patches_; }
+
+  const RadiosityProblem& problem_;
+  Eigen::Index patches_;
+  Eigen::Index groups_;
+  Eigen::MatrixXf arriving_;  // at each patch (row) from each group (column), by unit radiosity of its known patches
+  Eigen::VectorXd arrived_;   // its flux, m^2
+  Eigen::VectorXd area_;      // of the known patches, m^2
+};
 
 /// One step of a solver.
 struct Iterate {
@@ -100,5 +132,27 @@ class Iterations {
   Field ambient_, arrived_;
   Solution solution_;
 };
+
+/// Jacobi iteration B <- E + K B: iteration k adds bounce k (the Neumann series).
+Solution jacobi(Iterations iterations);
+
+/// Gauss-Seidel: every patch gathers with the newest values of the patches before it. The residual of an iterate is had
+/// from the sums of the next sweep, which costs no further application.
+Solution gauss_seidel(Iterations iterations, const RowTransport& transport);
+
+/// Successive over-relaxation: Gauss-Seidel with its changes multiplied by options.relaxation, or by
+/// relaxation_for(spectral_radius()) of the worst band.
+Solution sor(Iterations iterations, const RowTransport& transport);
+
+/// Gauss-Seidel from the first patch to the last and back.
+Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& transport);
+
+/// Chebyshev's semi-iteration for eigenvalues of K between -kappa and kappa, kappa the bound of
+/// docs/theory/solvers-and-bounds.md below 1, else the spectral radius.
+Solution chebyshev(Iterations iterations);
+
+/// A relaxation factor for matrices whose spectrum is one mode with the eigenvalue `radius` < 1 far above all others:
+/// where the mode and the rest decay alike. docs/theory/solvers-and-bounds.md.
+double relaxation_for(double radius);
 
 }  // namespace patchlight

@@ -3,11 +3,9 @@
 #include "patchlight/base/error.h"
 
 #include "base/vectors.h"
-#include "solve/coarse_transport.h"
 #include "solve/iterations.h"
 #include "solve/krylov.h"
-#include "solve/pocket_transport.h"
-#include "solve/relaxation.h"
+#include "solve/pockets.h"
 #include "solve/scattering.h"
 #include "solve/solved_bands.h"
 

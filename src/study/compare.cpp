@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/vectors.h"
 #include "plan/check_request.h"
-#include "solve/spectral_radius.h"
+#include "solve/bounds.h"
 
 #include <algorithm>
 #include <cmath>

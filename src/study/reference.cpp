@@ -1,13 +1,111 @@
 #include "study/reference.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/vectors.h"
-#include "mesh/average.h"
+#include "mesh/interpolate.h"
+#include "mesh/nested_mesh.h"
+#include "mesh/patch_lookup.h"
+#include "pipeline/first_mesh.h"
+#include "plan/memory.h"
 #include "solve/scattering.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace patchlight {
+namespace {
+
+// A size with nearly as many patches as the next finer one tells nothing.
+constexpr double too_many = 0.5;
+
+double longest_edge(const PatchCorners& corners) {
+  double longest = 0;
+  for (int k = 0; k < corners.count; ++k) {
+    const Point& from = corners.points[static_cast<std::size_t>(k)];
+    const Point& to = corners.points[static_cast<std::size_t>((k + 1) % corners.count)];
+    longest = std::max(longest, (to - from).norm());
+  }
+  return longest;
+}
+
+// Patches with a longer edge are cut into four; edges are at most twice as long.
+PatchMesh cut_to(const PatchMesh& mesh, double max_edge) {
+  std::vector<std::uint8_t> marked(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) marked[i] = longest_edge(mesh.corner_points(i)) > max_edge * (1 + 1e-9);
+  return refine(mesh, marked).mesh;
+}
+
+// From 2^(count - 1) times the finest edge down to it.
+std::vector<SizedMesh> all_sizes(const Scene& scene, const Plan& plan, double finest, int count) {
+  std::vector<SizedMesh> all;
+  for (int k = count - 1; k >= 0; --k) {
+    const double edge = std::ldexp(finest, k);
+    all.push_back({edge, all.empty() ? open_patches(scene, plan, edge) : cut_to(all.back().mesh, edge)});
+  }
+  return all;
+}
+
+// Halving edges overshoots: the edge for which the finest size has about as many patches as wanted.
+double edge_for(const Scene& scene, const Plan& plan, double wanted, int sizes) {
+  double best = plan.max_edge;
+  double least = std::numeric_limits<double>::infinity();
+  double edge = plan.max_edge;
+  for (int guess = 0; guess < 6 && least > 0.1; ++guess) {
+    const double found = all_sizes(scene, plan, edge, sizes).back().mesh.size();
+    const double miss = std::abs(std::log(found / wanted));
+    if (miss < least) least = miss, best = edge;
+    edge *= std::sqrt(found / wanted);
+  }
+  return best;
+}
+
+void require_memory_for_reference(std::size_t patches, const Request& request, const Plan& plan) {
+  try {
+    require_memory(patches, request, plan);
+  } catch (const MemoryError& error) {
+    throw MemoryError(std::string("the reference of a study has about four times the patches asked for: ") +
+                      error.what());
+  }
+}
+
+}  // namespace
+
+NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
+  Plan plan = make_plan(scene, request);
+  const double patches = open_patches(scene, plan, plan.max_edge).size();
+  plan.contacts.of_edge = 0.5;  // as meshes with error bars have it, which the largest patches are the parents of
+  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, patches, sizes);
+  std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
+  NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
+  require_memory_for_reference(result.finer.mesh.size(), request, plan);
+  all.pop_back();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool last = k + 1 == all.size();
+    if (!last && all[k].mesh.size() > too_many * all[k + 1].mesh.size()) continue;
+    result.sizes.push_back(std::move(all[k]));
+  }
+  return result;
+}
+
+PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other) {
+  constexpr double quarter = 0.25 * (1 + 1e-6);
+  const PatchLookup lookup(other);
+  for (;;) {
+    std::vector<std::uint8_t> cut(mesh.size(), 0);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      const auto there = lookup.patch_at(mesh.polygon[i], mesh.side[i], mesh.centroid[i]);
+      cut[i] = there && mesh.area[i] > quarter * other.area[*there] ? 1 : 0;
+    }
+    if (std::count(cut.begin(), cut.end(), 1) == 0) return mesh;
+    mesh = refine(mesh, cut).mesh;
+  }
+}
+
 namespace {
 
 // What the reference holds within each patch of a mesh.

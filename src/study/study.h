@@ -2,6 +2,8 @@
 
 #include "patchlight/simulate.h"
 
+#include "study/reference.h"
+
 #include <limits>
 #include <string>
 #include <vector>
@@ -24,6 +26,12 @@ struct StudySetting {
   bool on_time_front = false;    ///< no setting that competes is better for as many CPU seconds or fewer
   bool on_memory_front = false;  ///< nor for as many bytes or fewer
 };
+
+/// The setting with its errors against the reference. Its own error is that of the patch means, too.
+StudySetting judged(const Simulation& simulation, const Reference& reference);
+
+/// The setting with an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
+StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own);
 
 /// What a sweep changes. The order of a sweep is the power with which its own error falls with the edge of the patches,
 /// the reciprocal of the number of samples, and the tolerance.

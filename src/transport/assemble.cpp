@@ -2,10 +2,9 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "transport/cluster_pairs.h"
 #include "transport/estimators.h"
-#include "transport/narrow.h"
 #include "transport/pair_sampler.h"
+#include "transport/tiles.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -1,16 +1,34 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/base/progress.h"
-#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/sampling_error.h"
 
+#include "mesh/nested_mesh.h"
+
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace patchlight {
+
+/// A row of form factors whose sum is off.
+struct RowDefect {
+  PatchIndex patch = 0;
+  double row_sum = 0;   ///< sum_j F_ij
+  double expected = 0;  ///< what is seen of other patches: 1 - lost
+};
+
+/// The `count` rows with the largest defect |row_sum - expected| times the patch's area, worst first; of equals the
+/// first. Fewer where there are fewer rows, none without row sums. `area` in m^2. O(size log count).
+std::vector<RowDefect> worst_rows(const Eigen::VectorXd& row_sum, const LostShare& lost, const Eigen::VectorXd& area,
+                                  std::size_t count);
 
 /// How ClosedExchangeAreas::method begins where row sums were cut.
 inline constexpr std::string_view cut_row_sums = "row sums cut at 1 plus three standard errors";
@@ -42,5 +60,20 @@ ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorX
 
 /// The same entries without any change.
 ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason);
+
+/// Exchange areas between groups of patches in m^2: entry (G, H) is the sum of S_ij over the patches i of G and j of H,
+/// so that F_GH = S_GH / A_G. Symmetric. `group_of` has one number below `groups` per patch. O(size^2).
+Eigen::MatrixXd exchange_between_groups(const ExchangeAreas& S, std::span<const std::uint32_t> group_of,
+                                        std::uint32_t groups);
+
+/// The exchange areas between the parents of a mesh from those between its patches: their sums, S_GH = sum_{i in G, j
+/// in H} S_ij. No ray is traced; row sums and closure carry over. O(size^2).
+ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& mesh);
+
+/// What it changes elsewhere that the patches of a parent differ: for each parent G
+/// sum over bands and patches i of weight_i (sum_{c in G} S_ic difference_c)^2, with the difference of each patch from
+/// its parent's mean. O(size^2).
+Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh, const FieldView& difference,
+                                 const FieldView& weight);
 
 }  // namespace patchlight

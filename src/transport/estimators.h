@@ -2,9 +2,24 @@
 
 #include "patchlight/transport/assemble.h"
 
+#include "form_factor/patch_shape.h"
 #include "visibility/occluder.h"
 
+#include <array>
+#include <functional>
+
 namespace patchlight {
+
+/// A shadow ray between two patches.
+struct PairSample {
+  Point from;             ///< on the smaller patch
+  Point to;               ///< on the larger
+  double weight = 0;      ///< the mean of the weights of the free rays is the exchange area, m^2
+  double unoccluded = 0;  ///< an estimate of the exchange area without occluders, m^2; 0 if it is not used
+};
+
+/// A sample with uniformly distributed points on both patches: weight A_i A_j G.
+PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at);
 
 // What assemble_exchange_areas() does for Estimator::area and so on. Each is plain: no clusters, no short cuts.
 

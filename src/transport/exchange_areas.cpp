@@ -1,7 +1,6 @@
 #include "patchlight/transport/exchange_areas.h"
 
 #include "base/parallel.h"
-#include "transport/tile_kernel.h"
 #include "transport/tiles.h"
 
 #include <algorithm>

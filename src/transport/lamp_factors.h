@@ -4,16 +4,28 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/scene.h"
 
-#include "transport/lamp_pieces.h"
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_shape.h"
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace patchlight {
 
 class Occluder;
+
+/// A side of a polygon that shines evenly.
+struct LampSide {
+  PolygonIndex polygon = no_polygon;
+  Side side = Side::front;
+};
+
+/// The triangles and convex quadrilaterals that a side consists of.
+std::size_t piece_count(const Scene& scene, const LampSide& lamp);
 
 /// One value per patch (row) and lamp (column).
 using LampValues = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

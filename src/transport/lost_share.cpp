@@ -1,11 +1,9 @@
 #include "patchlight/transport/lost_share.h"
 
-#include "base/doublings.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "mesh/small_patches.h"
-#include "transport/patch_frame.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

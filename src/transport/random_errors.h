@@ -2,7 +2,6 @@
 
 #include "patchlight/base/field.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/sampling_error.h"
 
 #include <Eigen/Core>

@@ -9,12 +9,24 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
+
+/// Where blocks of rows are kept while they are traced, so that a run that was stopped goes on where it was: one block
+/// for every `patches_of_a_block` patches, the last of them shorter. What stands in a block is known to trace_rows()
+/// alone. keep() is called from several threads, for different blocks.
+struct RowBlocks {
+  static constexpr PatchIndex patches_of_a_block = 4096;
+
+  std::function<std::optional<std::vector<std::int32_t>>(std::size_t block)> read;  ///< nothing: not kept
+  std::function<void(std::size_t block, std::span<const std::int32_t> words)> keep;
+};
 
 /// What becomes of a ray of a row at a stop.
 enum class RayStep : std::uint8_t {
@@ -50,7 +62,6 @@ void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces&
 
 class BrightPatches;
 class Occluder;
-struct RowBlocks;
 
 /// An entry F_ij of a row with a weight of its own.
 struct RayEntry {
@@ -104,5 +115,13 @@ struct TracedRows {
 /// kept by an earlier call for the same. \throws Cancelled, and what the blocks throw.
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
+
+/// Rows of form factors for one colour: that of the clear polygons and mirrors of an occluder, which is as that by
+/// which the rows were traced but for the colours. Each row sums up to what its patch sees by light of this colour.
+/// Rows without stops stay as they are. No ray is traced.
+TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& occluder);
+
+/// Each row as a whole times what makes its sum that of `wanted`.
+void scale(RayRows& rows, const Eigen::VectorXd& wanted);
 
 }  // namespace patchlight

@@ -3,15 +3,125 @@
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
-#include "transport/patch_frame.h"
-#include "transport/ray_counts.h"
+#include "scene/transmittance.h"
+#include "transport/sights.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace patchlight {
+namespace {
+
+// Rays of a patch in each of two halves: between these, and a power of two.
+constexpr std::uint32_t fewest_rays = 8;
+
+// The error of patch i's irradiance falls with its rays, and counts by its area; with patches of very different sizes
+// more rays for the large ones pay. The exponent is measured: docs/theory/ray-method.md.
+constexpr double exponent = 0.4;
+
+// The power of two next to factor A_i^0.4.
+std::uint32_t rounded(double rays) {
+  const double power = std::round(std::log2(std::clamp<double>(rays, fewest_rays, most_rays)));
+  return 1U << static_cast<unsigned>(power);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
+  std::vector<double> size;
+  size.reserve(areas.size());
+  for (const double area : areas) size.push_back(std::pow(area, exponent));
+  const auto sum = [&](double factor) {
+    double all = 0;
+    for (const double s : size) all += rounded(factor * s);
+    return all;
+  };
+  // The largest factor with which there are no more rays than wanted, by bisection of its logarithm; sizes are
+  // positive.
+  const double wanted = 0.5 * mean * static_cast<double>(areas.size());
+  const auto [least, most] = std::minmax_element(size.begin(), size.end());
+  double low = std::log(fewest_rays / (2 * *most));
+  double high = std::log(2 * most_rays / *least);
+  for (int step = 0; step < 40; ++step) {
+    const double middle = 0.5 * (low + high);
+    (sum(std::exp(middle)) > wanted ? high : low) = middle;
+  }
+  std::vector<std::uint32_t> counts;
+  counts.reserve(areas.size());
+  for (const double s : size) counts.push_back(rounded(std::exp(low) * s));
+  return counts;
+}
+
+namespace {
+
+// Rays towards bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
+// in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance by
+// this.
+constexpr double least_gain = 1.75;
+
+// Rays of 32 neighbours, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
+// scatter.
+constexpr double least_share_by_chance = 1.0 / 128;
+
+// The variance of radiosity over the area, of those values that are not above a limit; the others are 0.
+double variance_up_to(const Eigen::VectorXd& radiosity, const Eigen::Map<const Eigen::VectorXd>& area, double limit) {
+  const Eigen::ArrayXd kept = (radiosity.array() > limit).select(0, radiosity.array());
+  const double mean = (area.array() * kept).sum() / area.sum();
+  return (area.array() * (kept - mean).square()).sum() / area.sum();
+}
+
+// The share of the area that is brighter.
+double share_above(const Eigen::VectorXd& radiosity, const Eigen::Map<const Eigen::VectorXd>& area, double limit) {
+  return (radiosity.array() > limit).select(area.array(), 0).sum() / area.sum();
+}
+
+}  // namespace
+
+BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expected, double threshold,
+                             const Occluder& occluder)
+    : density_(mesh.size(), 0) {
+  // 1. Those above the threshold, if rays towards them are worth it.
+  const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
+  const double least = threshold * expected.dot(area) / area.sum();
+  const double all = variance_up_to(expected, area, std::numeric_limits<double>::infinity());
+  const bool meets_by_chance = share_above(expected, area, least) >= least_share_by_chance;
+  if (meets_by_chance && all < least_gain * variance_up_to(expected, area, least)) return;
+  double flux = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (!(expected[i] > least)) continue;
+    flux += area[i] * expected[i];
+    patches_.push_back(i);
+    upto_.push_back(flux);
+  }
+
+  // 2. Their probabilities.
+  for (std::size_t k = 0; k < patches_.size(); ++k) {
+    const PatchIndex i = patches_[k];
+    upto_[k] /= flux;
+    density_[i] = static_cast<float>(expected[i] / flux);
+    sampled_.push_back(sampled_patch(patch_shape(mesh, i), mesh.polygon[i], occluder.frame()));
+  }
+  if (!patches_.empty()) upto_.back() = 1;
+
+  // 3. Where to begin to look: as many parts as patches.
+  for (std::size_t part = 0; part < patches_.size(); ++part) {
+    const double begin = static_cast<double>(part) / static_cast<double>(patches_.size());
+    guide_.push_back(static_cast<std::uint32_t>(std::upper_bound(upto_.begin(), upto_.end(), begin) - upto_.begin()));
+  }
+}
+
+BrightPatches::Chosen BrightPatches::at(double u) const {
+  std::size_t k = guide_[static_cast<std::size_t>(u * static_cast<double>(patches_.size()))];
+  while (k + 1 < upto_.size() && upto_[k] <= u) ++k;
+  const double before = k == 0 ? 0 : upto_[k - 1];
+  const auto stretched = static_cast<float>(std::clamp((u - before) / (upto_[k] - before), 0.0, 1 - 0x1p-24));
+  return {patches_[k], &sampled_[k], stretched};
+}
+
 namespace {
 
 // Coordinate d of sample k, in (0, 1).
@@ -200,6 +310,132 @@ PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
   PatchRays told = is_specular() ? trace_specular(patch, entries) : trace_plain(patch, entries);
   if (!bright_.empty()) add_toward_bright(patch, entries);
   return told;
+}
+
+namespace {
+
+bool has_left_the_scene(const Way& way) { return way.empty() || way.back().onward != Onward::ends; }
+
+bool is_specular_side(const SpecularFaces& faces, PolygonIndex polygon, Side side) {
+  const SpecularFace* const face = faces.at(polygon);
+  return face && face->is_specular(side);
+}
+
+}  // namespace
+
+// Of a clear patch, what each ray tells goes with what the patch holds at its angle.
+bool RowTracer::starts_clear(PatchIndex patch) const {
+  const SpecularFace* const face = occluder_.specular_faces().at(mesh_.polygon[patch]);
+  return face && face->is_clear();
+}
+
+// What a ray over the hemisphere tells at a stop on its way.
+SpecularStop RowTracer::stop_at(PatchIndex patch, const Ray& ray, const WayStop& at) const {
+  const SpecularFaces& faces = occluder_.specular_faces();
+  const Hit& hit = at.hit;
+  SpecularStop stop;
+  stop.patch = SpecularStop::at_back;
+  stop.form_factor = 1 / static_cast<float>(counts_[patch]);
+  if (sights_.has_patches(hit)) {
+    stop.patch = lookup_.patch_at(hit.polygon, hit.side, hit.point).value();
+    if (bright_.density(stop.patch) > 0) stop.form_factor = entry_of(patch, ray, hit, stop.patch);
+  }
+  if (at.onward == Onward::ends) {
+    stop.set(RayStep::ends, hit.side, 0);
+    return stop;
+  }
+  stop.polygon = hit.polygon;
+  stop.set(at.onward == Onward::through ? RayStep::through : RayStep::mirrored, hit.side,
+           cosine_between(faces.normal(hit.polygon), hit.direction));
+  return stop;
+}
+
+void RowTracer::add_stops(PatchIndex patch, const Ray& ray, const SeenWay& seen,
+                          std::vector<SpecularStop>& stops) const {
+  if (starts_clear(patch)) {
+    SpecularStop start;
+    start.polygon = mesh_.polygon[patch];
+    start.set(RayStep::sent, mesh_.side[patch], cosine_between(mesh_.normal[patch], ray.direction));
+    stops.push_back(start);
+  }
+  for (const WayStop& stop : seen.way) stops.push_back(stop_at(patch, ray, stop));
+  if (!has_left_the_scene(seen.way)) {
+    if (seen.end == Sight::contact) stops.back().patch = SpecularStop::at_back;
+    return;
+  }
+  SpecularStop last;
+  last.patch = seen.end == Sight::nothing ? SpecularStop::in_the_open : SpecularStop::at_back;
+  last.form_factor = 1 / static_cast<float>(counts_[patch]);
+  last.set(RayStep::ends, Side::front, 0);
+  stops.push_back(last);
+}
+
+PatchRays RowTracer::trace_specular(PatchIndex patch, RowEntries& entries) const {
+  const std::vector<Ray> rays = hemisphere_rays(patch);
+  const std::vector<SeenWay> seen = sights_.along_ways(patch, rays, hash({seed_, keys_[patch], 2}));
+  const bool is_clear = starts_clear(patch);
+  PatchRays told;
+  std::vector<PlainHit> hits;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const std::size_t half = k / counts_[patch];
+    const Way& way = seen[k].way;
+    if (!way.empty() && way.back().hit.distance > 0) told.inverse_lengths += 1 / way.back().hit.distance;
+    const bool is_plain = way.size() < 2 && !(way.size() == 1 && way[0].onward != Onward::ends);
+    const bool is_unseen = is_plain && (seen[k].end == Sight::back || seen[k].end == Sight::contact);
+    if (is_unseen) ++told.unseen;
+    if (is_clear || !is_plain) {
+      add_stops(patch, rays[k], seen[k], entries.stops[half]);
+    } else if (seen[k].end == Sight::nothing) {
+      ++told.escaped;
+    } else if (!is_unseen) {
+      hits.push_back({k, &way[0].hit});
+    }
+  }
+  add_hits(patch, rays, hits, told, entries);
+  return told;
+}
+
+// A shadow ray that is specular on its way.
+std::vector<SpecularStop> RowTracer::crossing_stops(const ShadowPacket& packet, std::size_t lane, PatchIndex patch,
+                                                    const RayEntry& entry,
+                                                    std::span<const PolygonIndex> crossed) const {
+  const SpecularFaces& faces = occluder_.specular_faces();
+  const Vector direction = Vector(packet.toward_x[lane], packet.toward_y[lane], packet.toward_z[lane]).normalized();
+  std::vector<SpecularStop> stops;
+  const auto add = [&](RayStep step, PolygonIndex polygon, Side side) {
+    SpecularStop stop;
+    stop.polygon = polygon;
+    stop.set(step, side, cosine_between(faces.normal(polygon), direction));
+    stops.push_back(stop);
+  };
+  if (starts_clear(patch)) add(RayStep::sent, mesh_.polygon[patch], mesh_.side[patch]);
+  for (const PolygonIndex polygon : crossed)
+    add(RayStep::crossed, polygon, faces.normal(polygon).dot(direction) < 0 ? Side::front : Side::back);
+  const PolygonIndex end = mesh_.polygon[entry.patch];
+  const bool is_held = is_specular_side(faces, end, mesh_.side[entry.patch]);
+  add(is_held ? RayStep::kept : RayStep::ends, end, mesh_.side[entry.patch]);
+  stops.back().patch = entry.patch;
+  stops.back().form_factor = entry.form_factor;
+  return stops;
+}
+
+// Those of a packet that no opaque polygon blocks.
+void RowTracer::add_arriving(const ShadowPacket& packet, PatchIndex patch, std::span<const RayEntry> entries,
+                             std::size_t half, RowEntries& into) const {
+  const SpecularFaces& faces = occluder_.specular_faces();
+  const auto crossings = occluder_.crossings(packet);
+  for (std::size_t lane = 0; lane < ShadowPacket::size; ++lane) {
+    const RayEntry& entry = entries[lane];
+    if (!(entry.form_factor > 0) || !crossings[lane]) continue;
+    const bool is_plain = crossings[lane]->empty() && !starts_clear(patch) &&
+                          !is_specular_side(faces, mesh_.polygon[entry.patch], mesh_.side[entry.patch]);
+    if (is_plain) {
+      into.halves[half].push_back(entry);
+      continue;
+    }
+    const std::vector<SpecularStop> stops = crossing_stops(packet, lane, patch, entry, *crossings[lane]);
+    into.stops[half].insert(into.stops[half].end(), stops.begin(), stops.end());
+  }
 }
 
 }  // namespace patchlight

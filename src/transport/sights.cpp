@@ -3,11 +3,22 @@
 #include "base/sampling.h"
 #include "scene/transmittance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 namespace patchlight {
+
+Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  Eigen::Matrix3d frame;
+  frame.col(2) = mesh.normal[patch];
+  frame.col(1) = frame.col(2).cross(corners.points[1] - corners.points[0]).normalized();
+  frame.col(0) = frame.col(1).cross(frame.col(2));
+  return frame;
+}
+
 namespace {
 
 // As many as shadow rays cross.
@@ -48,10 +59,11 @@ constexpr double behind_plane = 1e-5;
 // A face that lies farther behind the patch than this share of that is no face in contact which rounding has bent.
 constexpr double bent_by_rounding = 0.2;
 
-}  // namespace
-
+// Ways by geometry alone: from clear polygons and mirrors every ray goes on, whatever their colours, at a clear one
+// with SpecularFace::mirrored_rays() as from a mirror, else straight, drawn by `seed` as
+// Occluder::first_held_hits() draws; after 64 it ends on the next one.
 std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> rays, std::uint64_t seed,
-                               std::span<const std::size_t> keys) {
+                               std::span<const std::size_t> keys = {}) {
   const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
   std::vector<Way> ways;
   ways.reserve(rays.size());
@@ -59,6 +71,8 @@ std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> ra
     ways.push_back(way_from(occluder, hits[k], seed, keys.empty() ? k : keys[k]));
   return ways;
 }
+
+}  // namespace
 
 int count(std::span<const Seen> among, Sight sight) {
   return static_cast<int>(

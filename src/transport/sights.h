@@ -4,6 +4,7 @@
 
 #include "visibility/occluder.h"
 
+#include <Eigen/Core>
 #include <boost/container/small_vector.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,9 @@
 #include <vector>
 
 namespace patchlight {
+
+/// A right-handed frame that turns with the patch: along its first edge, across it, and along the normal.
+Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch);
 
 /// What a ray does where it has met a polygon.
 enum class Onward : std::uint8_t { through, mirrored, ends };
@@ -25,12 +29,6 @@ struct WayStop {
 /// All polygons that a ray meets, each specular but for the last one; empty where it meets nothing. A ray that does not
 /// end at its last stop has left the scene from there. Most have one stop, for which no memory is asked for.
 using Way = boost::container::small_vector<WayStop, 1>;
-
-/// Ways by geometry alone: from clear polygons and mirrors every ray goes on, whatever their colours, at a clear one
-/// with SpecularFace::mirrored_rays() as from a mirror, else straight, drawn by `seed` as
-/// Occluder::first_held_hits() draws; after 64 it ends on the next one.
-std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> rays, std::uint64_t seed,
-                               std::span<const std::size_t> keys = {});
 
 /// What a ray from a patch meets: a side of a polygon that has patches, nothing, a side without patches, or a face that
 /// lies against the patch.

@@ -1,13 +1,20 @@
 #pragma once
 
+#include "patchlight/scene/daylight.h"
+#include "patchlight/scene/luminaire.h"
 #include "patchlight/scene/scene.h"
 
 #include "verify/path_scene.h"
 
+#include <array>
 #include <optional>
 #include <vector>
 
 namespace patchlight {
+
+/// The radiant intensity of a luminaire without extent in a unit direction away from it, W/sr per band. `up` decides
+/// the tilt of measured luminaires. Written apart from src/lighting, so that the path tracer can test it.
+Spectrum radiant_intensity(const Luminaire& luminaire, const Vector& up, const Vector& direction);
 
 /// A point that receives light, with the unit normal of its side.
 struct LitPoint {
@@ -38,6 +45,26 @@ class DeltaSources {
   std::vector<Luminaire> luminaires_;
   std::optional<Sun> sun_;  // above the horizon
   Vector up_;
+};
+
+/// The radiance of sky and ground by direction. Written apart from src/lighting, so that the path tracer can test it.
+class SkyRadiance {
+ public:
+  SkyRadiance(const Sky& sky, const Vector& up);
+
+  /// W/(m^2 sr) from a unit direction.
+  Spectrum radiance_from(const Vector& direction) const;
+
+ private:
+  double relative(const Vector& direction) const;
+  double relative_horizontal_irradiance() const;
+
+  SkyKind kind_;
+  Vector up_;
+  Vector sun_;
+  std::array<double, 5> coefficients_{};  // a to e of the gradation and the indicatrix
+  Spectrum scale_;                        // W/(m^2 sr) for a relative radiance of 1
+  Spectrum ground_;                       // W/(m^2 sr)
 };
 
 }  // namespace patchlight

@@ -1,10 +1,112 @@
 #include "verify/path_scene.h"
 
+#include "base/sampling.h"
+#include "light/texture.h"
 #include "scene/coverings.h"
+#include "scene/transmittance.h"
+#include "verify/path_tracer.h"
+#include "visibility/occluder.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 namespace patchlight {
+namespace {
+
+// What clear materials are, each once.
+struct Panes {
+  std::vector<std::vector<Pane>> panes;
+  std::vector<Spectrum> held;
+};
+
+Panes panes_of_materials(const Scene& scene, Reflections reflections) {
+  Panes all;
+  for (const Material& material : scene.materials) {
+    all.panes.push_back(panes_of(material));
+    all.held.push_back(hemispherical_held(all.panes.back(), reflections == Reflections::followed));
+  }
+  return all;
+}
+
+Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<PolygonIndex, Side>& of,
+                   const KeptSides& kept, Reflections reflections) {
+  const auto [index, side] = of;
+  const Polygon& polygon = scene.polygons[index];
+  const MaterialIndex of_material = material_on(polygon, side);
+  const Material& material = scene.materials[of_material];
+  const bool is_front = side == Side::front;
+  Surface surface;
+  surface.kept = (is_front ? kept.front : kept.back)[index] != 0;
+  surface.normal = is_front ? front_normal(scene, index) : Vector(-front_normal(scene, index));
+  surface.reflectance = material.reflectance;
+  if (const TextureMap* map = texture_map_on(scene, polygon, side)) {
+    surface.texture = material.texture;
+    surface.texture_map = *map;
+  }
+  surface.panes = panes.panes[of_material];
+  surface.held = panes.held[of_material];
+  if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
+  surface.reflections = reflections;
+  surface.is_clear = is_opening(scene, index);
+  surface.is_specular = surface.is_clear || is_mirror(scene, index, Side::front) || is_mirror(scene, index, Side::back);
+  const bool is_mirrored = reflections == Reflections::followed && !surface.is_clear && is_mirror(scene, index, side);
+  surface.mirrored =
+      is_mirrored ? material.specular_reflectance : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  const bool both_kept = kept.front[index] != 0 && kept.back[index] != 0;
+  surface.scattered_through = both_kept && is_sheet(scene, index)
+                                  ? material.diffuse_transmittance
+                                  : Spectrum(Spectrum::Zero(material.reflectance.size()));
+  const bool emits = surface.kept && (is_front || polygon.back_material || kept.emit_from_back);
+  surface.exitance = emits ? material.exitance : Spectrum(Spectrum::Zero(material.exitance.size()));
+  return surface;
+}
+
+}  // namespace
+
+Spectrum reflectance_at(const Surface& surface, const Point& point) {
+  if (!surface.texture) return surface.reflectance;
+  return reflectance_at(*surface.texture, surface.texture_map.linear * point + surface.texture_map.offset).min(1);
+}
+
+Spectrum transmittance(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Zero(surface.reflectance.size());
+  return transmittance(surface.panes, std::min(1.0, std::abs(cosine)));
+}
+
+Spectrum specular_reflectance(const Surface& surface, double cosine) {
+  if (surface.panes.empty() || surface.reflections == Reflections::kept) return surface.mirrored;
+  return specular_reflectance(surface.panes, std::min(1.0, std::abs(cosine)));
+}
+
+Spectrum relative_held(const Surface& surface, double cosine) {
+  if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
+  const Spectrum onward = transmittance(surface, cosine) + specular_reflectance(surface, cosine);
+  return onward.unaryExpr(&held_of) / surface.held;
+}
+
+namespace {
+
+Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections = Reflections::kept) {
+  const Panes panes = panes_of_materials(scene, reflections);
+  Surfaces surfaces;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back})
+      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept, reflections));
+  }
+  return surfaces;
+}
+
+}  // namespace
+
+Eigen::Matrix3d frame_around(const Vector& normal) {
+  const Vector tangent = normal.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << tangent, normal.cross(tangent), normal;
+  return frame;
+}
 
 PathScene::PathScene(const Scene& scene, const KeptSides& sides, Reflections reflections)
     : tracing_(scene, find_coverings(scene, sides), Occluder::Blockers::all, reflections),
@@ -53,6 +155,72 @@ Spectrum PathScene::through_panes(const Segment& segment) const {
 
 Point PathScene::beyond(const Point& from, const Vector& direction) const {
   return from + (extent() + (from - bounds_.center()).norm()) * direction;
+}
+
+namespace {
+
+constexpr std::uint32_t rays_per_point = 8;
+
+// Slope of the rays around the horizon.
+constexpr double grazing_slope = 1e-3;
+
+// A face lies against the receiver when it is so near to it, as a share of the scene's extent.
+constexpr double contact = 1e-5;
+
+struct VisibilityTest {
+  const Occluder& occluder;
+  const Surfaces& surfaces;
+  const PathReceiver& receiver;
+  Vector normal;
+  Eigen::Matrix3d frame;
+  double reach;  // metres within which a face lies against the receiver
+
+  bool looks_out(const Ray& ray) const;
+  std::vector<Ray> rays_from(const Point& point, std::uint32_t seed) const;
+};
+
+// True when the ray meets a kept side, or gets into the open.
+bool VisibilityTest::looks_out(const Ray& ray) const {
+  const auto hit = occluder.first_hits({&ray, 1}).front();
+  if (hit) return surfaces.at(hit->polygon, hit->side).kept;
+  // What lies in the receiver's plane is met only from a little behind.
+  Ray from_behind = ray;
+  from_behind.origin -= reach * normal;
+  const auto second = occluder.first_hits({&from_behind, 1}).front();
+  if (!second || second->distance * ray.direction.dot(normal) >= 2 * reach) return true;
+  // What the receiver lies over is met from behind.
+  const Side other = second->side == Side::front ? Side::back : Side::front;
+  return occluder.lies_over(receiver.polygon, second->polygon, other);
+}
+
+std::vector<Ray> VisibilityTest::rays_from(const Point& point, std::uint32_t seed) const {
+  std::vector<Ray> rays;
+  for (const auto& u : scrambled_sobol(rays_per_point, seed)) {
+    rays.push_back({point, frame * square_to_cosine_hemisphere(u[0], u[1]), receiver.polygon});
+  }
+  for (std::uint32_t k = 0; k < rays_per_point; ++k) {
+    const double azimuth = 2 * std::numbers::pi * k / rays_per_point;
+    const Vector direction = Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope).normalized();
+    rays.push_back({point, frame * direction, receiver.polygon});
+  }
+  return rays;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const PathReceiver& receiver,
+                                  std::span<const Point> points, std::uint64_t seed) {
+  const Vector normal = surfaces.at(receiver.polygon, receiver.side).normal;
+  const VisibilityTest visibility{
+      occluder, surfaces, receiver, normal, frame_around(normal), contact / occluder.frame().scale};
+  std::vector<std::uint8_t> result;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const bool under_another = occluder.is_covered(receiver.polygon, receiver.side, points[k]);
+    const std::vector<Ray> rays = visibility.rays_from(points[k], hash({seed, k}));
+    const auto looks_out = [&](const Ray& ray) { return visibility.looks_out(ray); };
+    result.push_back(!under_another && std::any_of(rays.begin(), rays.end(), looks_out) ? 1 : 0);
+  }
+  return result;
 }
 
 }  // namespace patchlight

@@ -29,12 +29,8 @@
 #include "scene/extent.h"
 #include "scene/triangulate.h"
 #include "verify/delta_sources.h"
-#include "verify/exposed.h"
 #include "verify/mirror_images.h"
 #include "verify/path_scene.h"
-#include "verify/ray_walk.h"
-#include "verify/sky_radiance.h"
-#include "verify/surfaces.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "pipeline/world.h"
 #include "render/ambient_occlusion.h"
-#include "render/smooth.h"
+#include "render/render.h"
 #include "visibility/occluder.h"
 
 #include <numbers>

@@ -1,7 +1,11 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
+#include "scene/coverings.h"
+
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,5 +31,26 @@ bool contains(const FlatPolygon& polygon, const Point& point);
 /// than `tolerance` from its plane. May be false when it does by little: a rectangle of the polygon has to hold all
 /// crossings, and the seam of a hole counts as an edge.
 bool cuts_all(const FlatPolygon& polygon, std::span<const Point> from, std::span<const Point> to, double tolerance);
+
+/// Per polygon 1 when all vertices of the scene lie on one side of its plane, up to 1e-6 of the scene's extent: such a
+/// polygon is part of the convex hull and cannot stand between two points of the scene.
+/// O(polygons) for most scenes, O(polygons x vertices) for convex ones.
+std::vector<std::uint8_t> on_convex_hull(const Scene& scene);
+
+/// Tells the places of polygons over which another polygon lies, in recentred coordinates.
+struct CoveredPlaces {
+  Coverings coverings;
+  std::vector<FlatPolygon> polygons;  ///< of the scene
+
+  bool any() const { return !coverings.over.empty(); }
+
+  bool covers(PolygonIndex polygon, Side side, const Point& place) const;
+
+  /// True if one of two polygons lies over the other in one plane, but for rounding. O(log n) for n polygons over one.
+  bool lie_in_one_plane(PolygonIndex a, PolygonIndex b) const;
+
+  /// True when one end of a segment lies on a covered place of the polygon there, on the side that the segment sees.
+  bool covers_end(const Point& from, const Point& to, PolygonIndex from_polygon, PolygonIndex to_polygon) const;
+};
 
 }  // namespace patchlight

@@ -4,7 +4,7 @@
 #include "patchlight/base/large_array.h"
 #include "patchlight/scene/scene.h"
 
-#include "visibility/covered_places.h"
+#include "visibility/flat_polygon.h"
 #include "visibility/occluder.h"
 
 #include <array>

@@ -6,8 +6,6 @@
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/triangulate.h"
-#include "visibility/convex_hull.h"
-#include "visibility/covered_places.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
 

@@ -2,7 +2,6 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
 #include "support/meshes.h"

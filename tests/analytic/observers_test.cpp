@@ -4,7 +4,7 @@
 
 #include "form_factor/point_polygon.h"
 #include "light/photometry.h"
-#include "render/spherical_triangle.h"
+#include "render/light_samples.h"
 #include "scene/photometric_web.h"
 #include "support/scenes.h"
 

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "mesh/patch_lookup.h"
 #include "pipeline/radiosity_errors.h"
-#include "render/smooth.h"
+#include "render/render.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -12,7 +12,6 @@
 #include "pipeline/problem_of.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
-#include "transport/on_demand.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

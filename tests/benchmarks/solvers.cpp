@@ -5,8 +5,8 @@
 #include "patchlight/solve/solve.h"
 
 #include "base/parallel.h"
-#include "solve/relaxation.h"
-#include "solve/spectral_radius.h"
+#include "solve/bounds.h"
+#include "solve/iterations.h"
 #include "support/assembled.h"
 #include "support/test_room.h"
 

@@ -1,9 +1,9 @@
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/assemble.h"
 
-#include "mesh/average.h"
+#include "mesh/interpolate.h"
 #include "mesh/mesher.h"
-#include "mesh/refine.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/problem_of.h"
 #include "support/scenes.h"
 #include "transport/closure.h"

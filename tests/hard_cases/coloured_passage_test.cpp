@@ -5,7 +5,7 @@
 #include "pipeline/ray_form_factors.h"
 #include "scene/specular_faces.h"
 #include "support/scenes.h"
-#include "transport/rows_by_class.h"
+#include "transport/ray_transport.h"
 
 #include <algorithm>
 #include <array>

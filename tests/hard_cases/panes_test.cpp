@@ -3,7 +3,6 @@
 
 #include "mesh/mesher.h"
 #include "render/render.h"
-#include "render/smooth.h"
 #include "scene/specular_faces.h"
 #include "scene/transmittance.h"
 #include "support/scenes.h"

@@ -6,7 +6,7 @@
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/sampling_error.h"
 
-#include "form_factor/solid_angle.h"
+#include "form_factor/point_polygon.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 #include "transport/closure.h"

@@ -3,7 +3,7 @@
 #include "patchlight/solve/solve.h"
 
 #include "base/vectors.h"
-#include "mesh/other_sides.h"
+#include "mesh/nested_mesh.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
 

@@ -2,8 +2,6 @@
 
 #include "patchlight/simulate.h"
 
-#include "accuracy/enclosed.h"
-#include "accuracy/interest.h"
 #include "mesh/mesher.h"
 #include "support/daylight_office.h"
 

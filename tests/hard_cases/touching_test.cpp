@@ -1,10 +1,9 @@
 // Patches that touch: form factors next to a shared edge or vertex, and lengths that are no more than rounding.
 #include "patchlight/simulate.h"
 
-#include "form_factor/contour.h"
-#include "form_factor/monte_carlo.h"
+#include "form_factor/pair_samples.h"
+#include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
-#include "form_factor/solid_angle.h"
 #include "mesh/mesher.h"
 #include "scene/repair.h"
 #include "support/scenes.h"

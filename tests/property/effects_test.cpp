@@ -2,7 +2,6 @@
 // without it, on a scene made for it.
 #include "patchlight/simulate.h"
 
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "light/spectra.h"
 #include "scene/joined_bands.h"

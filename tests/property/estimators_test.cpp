@@ -4,7 +4,7 @@
 #include "form_factor/patch_shape.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
-#include "transport/group_exchange.h"
+#include "transport/closure.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-#include "transport/on_demand.h"
 
 #include "patchlight/input/read_scene.h"
 

@@ -2,7 +2,7 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/solve/solve.h"
 
-#include "solve/spectral_radius.h"
+#include "solve/bounds.h"
 #include "support/assembled.h"
 #include "support/direct_solution.h"
 #include "support/meshes.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/simulate.h"
 
-#include "mesh/average.h"
+#include "mesh/interpolate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/entry_errors.h"
 #include "patchlight/transport/exchange_areas.h"
 #include "patchlight/transport/lost_share.h"
 #include "patchlight/transport/sampling_error.h"

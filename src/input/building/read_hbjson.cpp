@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 
-#include "base/lower_case.h"
+#include "base/near_match.h"
 #include "files/reason.h"
 #include "files/sha256.h"
 #include "input/building/cut_openings.h"

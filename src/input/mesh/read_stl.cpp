@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/lower_case.h"
+#include "base/near_match.h"
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"

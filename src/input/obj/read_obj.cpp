@@ -3,7 +3,7 @@
 #include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 
-#include "base/lower_case.h"
+#include "base/near_match.h"
 #include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/at_line.h"

@@ -3,7 +3,6 @@
 #include "patchlight/base/geometry.h"
 
 #include "base/rounded.h"
-#include "base/shortest.h"
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
 #include "input/toml/toml_value.h"

@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 
-#include "base/shortest.h"
+#include "base/rounded.h"
 #include "input/reading_limits.h"
 #include "input/toml/toml_value.h"
 

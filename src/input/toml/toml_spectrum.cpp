@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/shortest.h"
+#include "base/rounded.h"
 #include "input/tables/read_spectrum.h"
 #include "input/text.h"
 #include "light/spectra.h"

@@ -2,14 +2,17 @@
 
 #include "patchlight/base/error.h"
 
-#include "output/file/partial_folder.h"
-#include "output/file/temporary.h"
-
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <sys/file.h>
@@ -21,7 +24,134 @@
 namespace patchlight {
 namespace {
 
+// What the names of all temporary files and folders begin with.
+constexpr std::string_view temporary_prefix = ".patchlight-";
+
+// So many names are tried before it is an error that they are all taken.
+constexpr int most_tries = 1000;
+
+}  // namespace
+
 namespace fs = std::filesystem;
+
+namespace {
+
+// A name beside `file` that no other process and no other call uses. The extension stays, as writers look at it.
+fs::path temporary_beside(const fs::path& file) {
+  static std::atomic<unsigned> calls{0};
+  const std::string name = std::string(temporary_prefix) + std::to_string(getpid()) + "-" + std::to_string(calls++);
+  return file.parent_path() / (name + file.extension().string());
+}
+
+}  // namespace
+
+fs::path followed(const fs::path& file) {
+  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
+  // Link by link: the last may name a file that is not there yet.
+  constexpr int most_links = 40;  // as Linux follows
+  fs::path target = fs::absolute(file);
+  std::error_code error;
+  for (int k = 0; k < most_links; ++k) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = target.parent_path() / next;
+  }
+  throw OutputError(file.string(), "is a link that leads nowhere: too many links follow one another");
+}
+
+namespace {
+
+// The same error for a user who does not know of the temporary folder: its path is replaced by `known`.
+OutputError renamed(const OutputError& error, const fs::path& temporary, const fs::path& known) {
+  const std::string text = error.what();
+  if (!text.starts_with(temporary.string())) return error;
+  const std::string rest = text.substr(temporary.string().size());
+  const std::size_t colon = std::min(rest.size(), rest.find(": "));
+  return {known.string() + rest.substr(0, colon), rest.substr(std::min(rest.size(), colon + 2))};
+}
+
+// Throws OutputError that tells the meaning of the system's error number.
+void fail_writing(const fs::path& file, const std::string& message, int error_number) {
+  throw OutputError(file.string(), message + ": " + std::strerror(error_number));
+}
+
+// Makes sure that a file or folder is on disk. `file` is the name that the user knows. Throws OutputError.
+void flush_to_disk(const fs::path& path, const fs::path& file) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_writing(file, "cannot be written", errno);
+  // Some file systems cannot flush a folder: EINVAL.
+  const int error_number = fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
+  close(descriptor);
+  if (error_number != 0) fail_writing(file, "cannot be written to disk", error_number);
+}
+
+// A new folder beside `target`, locked as long as this lives: an unlocked one was left by a run that was killed.
+// Whatever bears its name at the end is removed.
+class PartialFolder {
+ public:
+  // `known` is the name that the user knows. \throws OutputError.
+  PartialFolder(const std::filesystem::path& target, const std::filesystem::path& known);
+  ~PartialFolder();
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+constexpr const char* partial_extension = ".partial";
+
+// An unlocked file, or an unlocked folder with our extension.
+void remove_if_left(const fs::path& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  std::error_code ignored;
+  struct stat status {};
+  const bool is_known = fstat(descriptor, &status) == 0;
+  const bool is_ours =
+      is_known && (S_ISREG(status.st_mode) || (S_ISDIR(status.st_mode) && path.extension() == partial_extension));
+  if (is_ours && flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, ignored);
+  close(descriptor);
+}
+
+PartialFolder::PartialFolder(const fs::path& target, const fs::path& known) {
+  // A name that is taken is another program's.
+  for (int tries = 0; descriptor_ < 0; ++tries) {
+    path_ = temporary_beside(target).replace_extension(partial_extension);
+    if (mkdir(path_.c_str(), 0777) != 0) {
+      if (errno == EEXIST && tries < most_tries) continue;
+      fail_writing(known, "cannot write into the folder above it", errno);
+    }
+    descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor_ < 0) fail_writing(known, "cannot write into the folder above it", errno);
+    // Some file systems know no locks; then nobody can take the folder for a left one either. Another run may have done
+    // so before it was locked.
+    flock(descriptor_, LOCK_EX);
+    struct stat status {};
+    if (fstat(descriptor_, &status) == 0 && status.st_nlink == 0) {
+      close(descriptor_);
+      descriptor_ = -1;
+    }
+  }
+}
+
+PartialFolder::~PartialFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  close(descriptor_);
+}
+
+// Removes temporary files and folders of killed runs from a folder. One whose lock can be had belongs to nobody.
+void remove_left(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().starts_with(temporary_prefix)) remove_if_left(entry.path());
+  }
+}
 
 // An empty file, locked as long as this lives: an unlocked one was left by a run that was killed. Gone at the end,
 // unless it was renamed.
@@ -180,6 +310,107 @@ void WholeFiles::publish() {
   }
   for (const auto& [path, folder] : folders_) flush_to_disk(path, path);
   folders_.clear();
+}
+
+namespace {
+
+// The folder itself, absolute, without a slash at its end.
+fs::path folder_path(const fs::path& folder) {
+  const fs::path path = followed(folder).lexically_normal();
+  return path.filename().empty() ? path.parent_path() : path;
+}
+
+void check_target(const fs::path& folder, const fs::path& target, const MayReplace& may_replace) {
+  if (!fs::is_directory(target.parent_path())) {
+    throw OutputError(folder.string(), "there is no folder " + target.parent_path().string() + "; create it first");
+  }
+  if (!fs::exists(target)) return;
+  if (!fs::is_directory(target)) throw OutputError(folder.string(), "is a file; expected the name of a folder");
+  if (!fs::is_empty(target) && !may_replace(target)) {
+    throw OutputError(folder.string(),
+                      "holds other files than an earlier result; give the name of a new folder, or empty it first");
+  }
+}
+
+// Afterwards the new folder bears the name, and the old one, if any, that of the new.
+void swap_folders(const fs::path& fresh, const fs::path& target, const fs::path& folder) {
+  // An empty folder, or none, is replaced at once.
+  if (rename(fresh.c_str(), target.c_str()) == 0) return;
+  if (renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return;
+  // Some file systems cannot exchange: then for a moment there is neither.
+  const fs::path old = temporary_beside(target).replace_extension(fresh.extension());
+  if (rename(target.c_str(), old.c_str()) != 0) fail_writing(folder, "cannot be replaced", errno);
+  fs::rename(fresh, target);
+  fs::remove_all(old);
+}
+
+}  // namespace
+
+void check_folder_writable(const fs::path& folder, const MayReplace& may_replace) {
+  try {
+    const fs::path target = folder_path(folder);
+    check_target(folder, target, may_replace);
+    const PartialFolder trial(target, folder);
+    remove_left(target.parent_path());
+  } catch (const fs::filesystem_error& error) {
+    throw OutputError(folder.string(), error.code().message());
+  }
+}
+
+bool holds_result(const fs::path& folder, const FolderResult& result) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(result.names.begin(), result.names.end(), name) == result.names.end()) return false;
+  }
+  std::ifstream stream(folder / result.facts_file);
+  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  return json.is_object() && json.value("kind", nlohmann::json()) == result.kind;
+}
+
+void write_whole_folder(const fs::path& folder, const MayReplace& may_replace,
+                        const std::function<void(const fs::path& temporary)>& write) {
+  try {
+    const fs::path target = folder_path(folder);
+    check_target(folder, target, may_replace);
+    const PartialFolder temporary(target, folder);
+    try {
+      write(temporary.path());
+    } catch (const OutputError& error) {
+      throw renamed(error, temporary.path(), (folder / "").parent_path());
+    }
+    flush_to_disk(temporary.path(), folder);
+    swap_folders(temporary.path(), target, folder);
+    flush_to_disk(target.parent_path(), folder);
+  } catch (const std::system_error& error) {
+    throw OutputError(folder.string(), "cannot be written: " + error.code().message());
+  }
+}
+
+void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
+  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    // A full disk may show on closing only.
+    stream.close();
+    if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+  });
+}
+
+std::string csv_cell(const std::string& name) {
+  const bool is_formula = !name.empty() && std::string("=+-@\t\r\n").find(name[0]) != std::string::npos;
+  const std::string text = is_formula ? "'" + name : name;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
+  return quoted + '"';
+}
+
+std::string csv_cell(double number) {
+  if (!std::isfinite(number)) return {};
+  std::ostringstream text;
+  text.precision(9);
+  text << number;
+  return text.str();
 }
 
 }  // namespace patchlight

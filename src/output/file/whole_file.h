@@ -1,11 +1,20 @@
 #pragma once
 
+#include "patchlight/base/error.h"
+
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace patchlight {
+
+/// The file itself, absolute, where `file` is a symbolic link to it, also when that is not there yet: renaming
+/// would replace the link. \throws OutputError when the name is empty, or links lead in a circle.
+std::filesystem::path followed(const std::filesystem::path& file);
 
 /// Lets `write` fill a temporary file beside `file`, flushes it to disk and renames it to `file`: whoever looks sees
 /// the old file or the whole new one. When `write` throws, the temporary file is removed and `file` stays as it was.
@@ -37,5 +46,38 @@ class WholeFiles {
   struct Folder;
   std::map<std::filesystem::path, std::unique_ptr<Folder>> folders_;
 };
+
+/// True for a folder that may be replaced: one with an earlier result.
+using MayReplace = std::function<bool(const std::filesystem::path& folder)>;
+
+/// What is written into a folder of its own.
+struct FolderResult {
+  std::string facts_file;          ///< JSON
+  std::string kind;                ///< what stands in it as "kind"
+  std::vector<std::string> names;  ///< of all that may be there
+};
+
+/// True for a folder that holds such a result, and nothing that was not written with it.
+bool holds_result(const std::filesystem::path& folder, const FolderResult& result);
+
+/// Lets `write` fill a temporary folder beside `folder` and renames it to `folder`: whoever looks sees the old folder
+/// or the whole new one. When `write` throws, the temporary folder is removed and `folder` stays as it was. \throws
+/// OutputError when the place is not writable, or `folder` is a file or holds what may not be replaced.
+void write_whole_folder(const std::filesystem::path& folder, const MayReplace& may_replace,
+                        const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Fails early: \throws OutputError when write_whole_folder could not write here. Removes what killed runs have left.
+void check_folder_writable(const std::filesystem::path& folder, const MayReplace& may_replace);
+
+/// Writes `bytes` as a whole file, see write_whole_file(). \throws OutputError.
+void write_bytes(const std::filesystem::path& file, std::string_view bytes);
+
+/// A name as a cell of a CSV file (RFC 4180): in quotes where a comma, a quote or a line break would end it early.
+/// Before a first letter that makes spreadsheets take a cell for a formula (= + - @, tab, line break) stands an
+/// apostrophe, so that it is text.
+std::string csv_cell(const std::string& name);
+
+/// A number as a cell, with nine digits; an empty cell stands for one that is not finite.
+std::string csv_cell(double number);
 
 }  // namespace patchlight

@@ -1,6 +1,7 @@
 #include "output/image/write_lightmap.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/output/provenance.h"
 #include "patchlight/output/write_image.h"
@@ -8,14 +9,10 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 
-#include "output/file/whole_folder.h"
-#include "output/file/write_bytes.h"
-#include "output/image/lightmap_picture.h"
-#include "output/image/png_bytes.h"
-#include "output/image/write_exr.h"
-#include "output/mesh/append_bytes.h"
-#include "output/mesh/glb_file.h"
-#include "output/report/json_array.h"
+#include "output/file/whole_file.h"
+#include "output/image/write_image.h"
+#include "output/mesh/write_mesh.h"
+#include "output/report/report_json.h"
 #include "render/lightmap_charts.h"
 #include "render/tone_map.h"
 
@@ -32,6 +29,19 @@
 
 namespace patchlight {
 namespace {
+
+// A radiance of a lightmap as colours for a display, W/(m^2 sr) times the exposure, row by row: no field in double
+// precision of the whole map is made.
+DisplayImage picture_of_map(const Lightmap& map, const TexelField& radiance, double exposure, const Bands& bands) {
+  DisplayImage image{map.width, map.height, {}};
+  image.pixels.reserve(static_cast<std::size_t>(radiance.rows()));
+  for (Eigen::Index row = 0; row < radiance.rows(); row += map.width) {
+    const Field here = radiance.middleRows(row, map.width).cast<double>();
+    const auto colours = tone_map(here, exposure, bands);
+    image.pixels.insert(image.pixels.end(), colours.begin(), colours.end());
+  }
+  return image;
+}
 
 using GltfJson = nlohmann::ordered_json;
 

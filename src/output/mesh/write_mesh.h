@@ -1,12 +1,57 @@
 #pragma once
 
+#include "patchlight/base/geometry.h"
 #include "patchlight/mesh/patch_mesh.h"
+#include "patchlight/output/provenance.h"
 #include "patchlight/scene/scene.h"
+#include "patchlight/views/views.h"
 
 #include <Eigen/Core>
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
 
 namespace patchlight {
+
+/// Appends a number as it stands in memory, least significant byte first.
+template <class Number>
+requires std::integral<Number> || std::floating_point<Number>
+void append_bytes(std::string& bytes, Number number) {
+  static_assert(std::endian::native == std::endian::little, "the formats written are little endian");
+  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+  bytes.append(raw.data(), raw.size());
+}
+
+/// Numbers of the glTF 2.0 specification.
+namespace gltf {
+inline constexpr int type_float = 5126, type_unsigned_short = 5123, type_unsigned_int = 5125;
+inline constexpr int target_vertices = 34962, target_indices = 34963;
+inline constexpr int linear_filter = 9729, clamp_to_edge = 33071;
+}  // namespace gltf
+
+/// glTF's y points up: of a scene whose z does, (x, y, z) becomes (x, z, -y).
+Vector y_up(const Vector& vector, const Scene& scene);
+
+/// Writes a binary glTF of a description and the one buffer that it names, padded as the format wants. \throws
+/// OutputError, also when the file would exceed the format's 4 GiB.
+void write_glb_file(const std::filesystem::path& file, const nlohmann::ordered_json& description,
+                    const std::string& buffer);
+
+/// Writes the patches as a coloured surface for viewers and the web: binary glTF 2.0, unlit (KHR_materials_unlit), one
+/// sided, triangles, vertex colours of the interpolated radiance at the recorded exposure. glTF is Y up: a scene whose
+/// z points up is turned, (x, y, z) becomes (x, z, -y). Positions are floats relative to the centre of the bounds,
+/// which is the node's translation. \throws OutputError, also when the file would exceed the format's 4 GiB.
+void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
+
+/// Writes the patches as a coloured surface for viewers: binary little-endian PLY, positions in metres in double, per
+/// vertex the display colour (sRGB, 8 bits) of the interpolated radiance at the recorded exposure, one face per patch.
+/// \throws OutputError.
+void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
 /// The patches of form factors and the sums of their rows.
 struct MeshOfRows {

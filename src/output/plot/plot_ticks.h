@@ -2,6 +2,7 @@
 
 #include "output/plot/write_plot.h"
 
+#include <cairo.h>
 #include <string>
 #include <vector>
 
@@ -35,5 +36,31 @@ std::vector<Tick> axis_ticks(const AxisRange& range, Scale scale, int most);
 
 /// Where the value stands: 0 is the lower end of the range, 1 the upper.
 double place_on_axis(double value, const AxisRange& range, Scale scale);
+
+/// How a text lies about its place, along its direction.
+enum class Align { left, centre, right };
+
+/// A point of the picture, in pixels from the upper left corner.
+struct Pixel {
+  double x = 0;
+  double y = 0;
+};
+
+/// Sets the size of the texts that follow, in pixels.
+void set_text_size(cairo_t* cairo, double size);
+
+double text_width(cairo_t* cairo, const std::string& text);
+
+/// The text as UTF-8, bytes that are none replaced; when it is wider than `width`, its end is cut off and marked by
+/// "...".
+std::string fitting_text(cairo_t* cairo, const std::string& text, double width);
+
+/// Draws one line of text, halfway up at `at`.
+void draw_text(cairo_t* cairo, const Pixel& at, const std::string& text, Align align);
+
+/// The same with the label of a tick, its exponent raised.
+void draw_label(cairo_t* cairo, const Pixel& at, const Tick& tick, Align align);
+
+double label_width(cairo_t* cairo, const Tick& tick);
 
 }  // namespace patchlight

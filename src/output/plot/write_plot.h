@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cairo.h>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,5 +37,9 @@ struct Plot {
 /// than 1e200 in size, on a logarithmic axis also what is below 1e-200. Texts are UTF-8; too long ones are cut. \throws
 /// OutputError, also for another extension.
 void write_plot(const std::filesystem::path& file, const Plot& plot);
+
+/// Writes a drawing of so many pixels, by the extension of the file: .svg or .png. The same bytes on every run.
+/// \throws OutputError.
+void write_drawing(const std::filesystem::path& file, int width, int height, const std::function<void(cairo_t*)>& draw);
 
 }  // namespace patchlight

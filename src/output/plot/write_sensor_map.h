@@ -1,9 +1,13 @@
 #pragma once
 
+#include "patchlight/base/geometry.h"
 #include "patchlight/gather/readings.h"
 #include "patchlight/scene/sensor.h"
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +15,26 @@
 #include <vector>
 
 namespace patchlight {
+
+/// A straight piece of an isoline: (column, row) of both ends, in steps of the lattice.
+using IsolinePiece = std::array<Eigen::Vector2d, 2>;
+
+/// Where values at the points of a lattice, linear between neighbours, have this level (marching squares, Lorensen and
+/// Cline 1987 in the plane); nothing next to points that have no number.
+std::vector<IsolinePiece> isoline(const Eigen::MatrixXd& values, double level);
+
+/// The axes of a map of sensors, unit vectors.
+struct MapAxes {
+  Vector right, above;
+};
+
+/// Level sensors are seen from above with north above, others from the side that they face, `normal`.
+inline MapAxes map_axes(const Vector& normal, const Vector& up, const Vector& north) {
+  constexpr double level = 0.7;
+  if (std::abs(normal.dot(up)) > level) return {north.cross(up).normalized(), north};
+  const Vector right = up.cross(normal).normalized();
+  return {right, normal.cross(right).normalized()};
+}
 
 /// What a map of sensors shows.
 enum class MapQuantity : std::uint8_t {

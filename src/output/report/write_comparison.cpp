@@ -2,12 +2,9 @@
 
 #include "patchlight/base/error.h"
 
-#include "output/file/whole_folder.h"
-#include "output/file/write_bytes.h"
+#include "output/file/whole_file.h"
 #include "output/plot/write_plot.h"
-#include "output/report/comparison_json.h"
-#include "output/report/csv_cell.h"
-#include "output/vtk/write_series.h"
+#include "output/vtk/write_vtk.h"
 
 #include <algorithm>
 #include <array>

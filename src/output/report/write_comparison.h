@@ -6,8 +6,12 @@
 #include "study/compare.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 namespace patchlight {
+
+/// What write_comparison() writes as compare.json. Names from a model may hold bytes that are not UTF-8.
+nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& comparison, const Provenance& provenance);
 
 /// Writes a folder, whole or not at all: the table (compare.csv), every iteration of every solver (history.csv), both
 /// with the facts of the run (compare.json), the true error by iteration, by operator application and by second as

@@ -1,10 +1,7 @@
 #include "output/report/write_study.h"
 
-#include "output/file/whole_folder.h"
-#include "output/file/write_bytes.h"
+#include "output/file/whole_file.h"
 #include "output/plot/write_plot.h"
-#include "output/report/csv_cell.h"
-#include "output/report/study_json.h"
 #include "study/price.h"
 
 #include <algorithm>

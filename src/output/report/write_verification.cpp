@@ -1,16 +1,48 @@
 #include "output/report/write_verification.h"
 
-#include "output/file/write_bytes.h"
-#include "output/report/accuracy_json.h"
+#include "patchlight/output/provenance.h"
 
+#include "output/file/whole_file.h"
+#include "output/report/report_json.h"
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// Keeps the keys in the order in which they are set. Numbers that are not finite are written as null.
+// Keeps the keys in the order in which they are set.
 using Json = nlohmann::ordered_json;
+
+Json case_part(const ValidationResult& result) {
+  Json part;
+  part["case"] = result.name;
+  part["exact"] = result.exact;
+  part["exact_from"] = result.source;
+  part["computed"] = result.measured.value;
+  part["error_bar"] = result.measured.error_bar;
+  part["error_bar_from"] = result.measured.bar_from;
+  part["within_bar"] = within_bar(result);
+  return part;
+}
+
+}  // namespace
+
+std::string validation_json(std::span<const ValidationResult> results) {
+  Json json;
+  json["version"] = version();
+  json["sound"] = std::all_of(results.begin(), results.end(), within_bar);
+  json["cases"] = Json::array();
+  for (const ValidationResult& result : results) json["cases"].push_back(case_part(result));
+  return json.dump(2) + "\n";
+}
+
+void write_validation(const std::filesystem::path& file, std::span<const ValidationResult> results) {
+  write_bytes(file, validation_json(results));
+}
+
+namespace {
 
 template <typename Values>
 std::vector<double> list(const Values& values) {

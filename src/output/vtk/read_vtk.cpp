@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "files/isolated.h"
-#include "files/message.h"
 
 #include <algorithm>
 #include <charconv>

@@ -3,9 +3,8 @@
 #include "patchlight/gather/readings.h"
 #include "patchlight/scene/sensor.h"
 
-#include "light/colour.h"
-#include "output/file/write_bytes.h"
-#include "output/report/csv_cell.h"
+#include "light/photometry.h"
+#include "output/file/whole_file.h"
 #include "output/vtk/vtk_polygons.h"
 
 #include <cassert>

@@ -1,9 +1,14 @@
 #pragma once
 
 #include "patchlight/output/provenance.h"
+#include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
+#include <Eigen/Core>
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace patchlight {
 
@@ -16,5 +21,31 @@ namespace patchlight {
 /// per stage. docs/reference/outputs/vtp.md lists them all. A file whose name ends in .vtu gets an unstructured grid
 /// with the same arrays, compressed with zlib, and of the facts those that are numbers. \throws OutputError.
 void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
+
+/// Irradiance H_k in W/m^2 of one iterate, one row per patch, narrowed to float. The iterate is B_k = E + rho o H_k.
+using IterateIrradiance = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Writes a time series for ParaView: FILE.pvd and, in the folder FILE_series beside it, one .vtp per iterate with
+/// radiance, irradiance and rgb, the iteration as its time. `iterates` has one entry per row of the solution's history.
+/// Everything is whole at any moment: the .pvd is replaced last and names new files only; those of an older series are
+/// removed after that. \throws OutputError, Cancelled; then the older series is still there.
+void write_series(const std::filesystem::path& pvd, const Scene& scene, const Simulation& simulation,
+                  const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
+                  const Observer& observer = {});
+
+/// What makes the .pvd file appear with this text.
+using PublishCollection = std::function<void(const std::string& collection)>;
+
+/// The same; the .pvd is left to `publish`, which may let other files appear with it. When it throws, the older series
+/// is still there. Runs that write one series do so one after the other.
+void write_series(const std::filesystem::path& pvd, const Scene& scene, const Simulation& simulation,
+                  const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
+                  const Observer& observer, const PublishCollection& publish);
+
+/// The folder of a series' .vtp files.
+std::filesystem::path series_folder(const std::filesystem::path& pvd);
+
+/// Fails early: \throws OutputError when write_series could not write here.
+void check_series_writable(const std::filesystem::path& pvd);
 
 }  // namespace patchlight

@@ -1,5 +1,4 @@
-#include "accuracy/choice_of_lamps.h"
-
+#include "accuracy/quarters_gather.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 

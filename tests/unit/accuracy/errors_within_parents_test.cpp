@@ -1,7 +1,6 @@
-#include "accuracy/errors_within_parents.h"
-
+#include "accuracy/errors.h"
 #include "base/vectors.h"
-#include "mesh/means_around.h"
+#include "mesh/interpolate.h"
 #include "mesh/mesher.h"
 #include "support/direct_solution.h"
 #include "support/scenes.h"

@@ -1,4 +1,4 @@
-#include "accuracy/spanning_bands.h"
+#include "accuracy/errors.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
-#include "archive/geometry_hash.h"
 #include "archive/npy.h"
+#include "archive/scene_hash.h"
 #include "support/scenes.h"
 #include "support/test_room.h"
 #include "unit/output/temporary_folder.h"

@@ -1,7 +1,6 @@
-#include "archive/row_block_files.h"
-
 #include "patchlight/scene/sides.h"
 
+#include "archive/ray_row_files.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 

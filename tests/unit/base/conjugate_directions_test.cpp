@@ -1,4 +1,4 @@
-#include "base/conjugate_directions.h"
+#include "base/vectors.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "base/shell_word.h"
+#include "base/near_match.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
-#include "form_factor/contour.h"
-
+#include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 
 #include <cmath>

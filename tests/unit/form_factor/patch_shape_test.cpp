@@ -2,7 +2,6 @@
 
 #include "patchlight/scene/sides.h"
 
-#include "form_factor/contour.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 

@@ -1,4 +1,3 @@
-#include "form_factor/solid_angle.h"
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"

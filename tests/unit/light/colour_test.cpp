@@ -1,4 +1,3 @@
-#include "light/colour.h"
 
 #include "light/photometry.h"
 #include "light/spectra.h"

@@ -5,9 +5,9 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "light/pane.h"
-#include "mesh/kept_patches.h"
 #include "mesh/mesher.h"
-#include "mesh/refine.h"
+#include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "scene/photometric_web.h"
 #include "support/scenes.h"
 

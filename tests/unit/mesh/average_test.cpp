@@ -1,6 +1,5 @@
-#include "mesh/average.h"
-
 #include "base/parallel.h"
+#include "mesh/interpolate.h"
 #include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
 

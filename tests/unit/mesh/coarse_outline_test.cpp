@@ -1,5 +1,4 @@
-#include "mesh/coarse_outline.h"
-
+#include "mesh/outline.h"
 #include "scene/simple_polygon.h"
 #include "support/scenes.h"
 

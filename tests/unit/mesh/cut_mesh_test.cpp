@@ -1,5 +1,5 @@
 // Patches and lines of contact: laws on rooms with things in them at random.
-#include "mesh/cut_outlines.h"
+#include "mesh/cut_polygons.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/noded_lines.h"

@@ -1,8 +1,7 @@
-#include "mesh/quarters.h"
-
 #include "base/sampling.h"
 #include "mesh/mesher.h"
-#include "mesh/refine.h"
+#include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,7 @@
-#include "mesh/refine.h"
-
 #include "base/sampling.h"
 #include "mesh/interpolate.h"
 #include "mesh/mesher.h"
-#include "mesh/other_sides.h"
+#include "mesh/nested_mesh.h"
 #include "support/polygon_shapes.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "patchlight/base/error.h"
 
-#include "output/plot/isolines.h"
 #include "output/plot/write_sensor_map.h"
 #include "scene/sensor_grid.h"
 #include "temporary_folder.h"

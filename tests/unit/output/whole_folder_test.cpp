@@ -1,8 +1,6 @@
-#include "output/file/whole_folder.h"
-
 #include "patchlight/base/error.h"
 
-#include "output/file/write_bytes.h"
+#include "output/file/whole_file.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>

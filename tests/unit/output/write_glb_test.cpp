@@ -1,7 +1,6 @@
-#include "output/mesh/write_glb.h"
-
 #include "glb_parts.h"
-#include "render/smooth.h"
+#include "output/mesh/write_mesh.h"
+#include "render/render.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"

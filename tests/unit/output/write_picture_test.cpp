@@ -1,10 +1,9 @@
-#include "output/image/write_picture.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
 
 #include "light/photometry.h"
+#include "output/image/write_image.h"
 #include "render/tone_map.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"

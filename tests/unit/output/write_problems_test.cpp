@@ -1,6 +1,5 @@
-#include "output/vtk/write_problems.h"
-
 #include "output/report/write_survey.h"
+#include "output/vtk/vtk_polygons.h"
 #include "scene/repair.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"

@@ -1,7 +1,6 @@
-#include "output/vtk/write_series.h"
-
 #include "patchlight/base/error.h"
 
+#include "output/vtk/write_vtk.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"

@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "light/photometry.h"
-#include "render/smooth.h"
+#include "render/render.h"
 #include "render/tone_map.h"
 #include "temporary_folder.h"
 #include "tiny_simulation.h"

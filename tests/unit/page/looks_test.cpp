@@ -1,7 +1,6 @@
-#include "page/looks.h"
-
 #include "patchlight/views/picture.h"
 
+#include "page/drawn_faces.h"
 #include "render/tone_map.h"
 #include "tiny_simulation.h"
 

@@ -1,4 +1,4 @@
-#include "page/packed.h"
+#include "page/drawn_faces.h"
 
 #include <cstdint>
 #include <cstring>

@@ -75,8 +75,8 @@ TEST(Survey, DoubtsNoUnitOfASiteWithBuildingsOfSomeHeight) {
     const double far = 80 * scale;
     return with_polygon(room, {Point(-far, -far, 0), Point(far, -far, 0), Point(far, far, 0), Point(-far, far, 0)});
   };
-  EXPECT_FALSE(has(survey_of(on_lawn(1)), ProblemKind::implausible_size));
-  EXPECT_TRUE(has(survey_of(on_lawn(100)), ProblemKind::implausible_size));
+  EXPECT_FALSE(has(survey_of(on_lawn(1)), DiagnosticCode::implausible_size));
+  EXPECT_TRUE(has(survey_of(on_lawn(100)), DiagnosticCode::implausible_size));
 }
 
 TEST(Survey, DoubtsNoUnitThatTheFileStates) {

@@ -1,6 +1,5 @@
-#include "render/hemisphere.h"
 
-#include "render/irradiance_cache.h"
+#include "render/gathered_light.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

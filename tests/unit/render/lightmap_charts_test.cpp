@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
-#include "render/lightmap_padding.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "render/pixel_statistics.h"
+#include "render/final_gather.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
-#include "render/smooth.h"
-
 #include "mesh/mesher.h"
+#include "render/render.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 

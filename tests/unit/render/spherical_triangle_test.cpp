@@ -1,7 +1,6 @@
-#include "render/spherical_triangle.h"
-
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
+#include "render/light_samples.h"
 
 #include <gtest/gtest.h>
 #include <numbers>

@@ -1,6 +1,5 @@
 #include "scene/spectral_bands.h"
 
-#include "light/colour.h"
 #include "light/photometry.h"
 #include "scene/band_choice.h"
 #include "scene/joined_bands.h"

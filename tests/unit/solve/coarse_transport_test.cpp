@@ -1,4 +1,4 @@
-#include "solve/coarse_transport.h"
+#include "solve/iterations.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

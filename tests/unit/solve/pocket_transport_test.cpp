@@ -1,4 +1,3 @@
-#include "solve/pocket_transport.h"
 
 #include "patchlight/solve/solve.h"
 

@@ -1,5 +1,4 @@
-#include "solve/spectral_radius.h"
-
+#include "solve/bounds.h"
 #include "transport/closure.h"
 #include "transport/dense.h"
 

@@ -1,8 +1,7 @@
-#include "study/nested_sizes.h"
-
 #include "patchlight/simulate.h"
 
 #include "mesh/patch_lookup.h"
+#include "study/reference.h"
 #include "support/daylight_office.h"
 
 #include <gtest/gtest.h>

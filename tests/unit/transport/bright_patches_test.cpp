@@ -1,7 +1,6 @@
-#include "transport/bright_patches.h"
-
 #include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "transport/row_tracer.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "patchlight/transport/entry_errors.h"
+#include "patchlight/transport/sampling_error.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

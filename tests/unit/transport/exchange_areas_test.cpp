@@ -1,7 +1,6 @@
 #include "patchlight/transport/exchange_areas.h"
 
-#include "transport/entries.h"
-#include "transport/narrow.h"
+#include "transport/tiles.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "transport/group_exchange.h"
+#include "transport/closure.h"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -1,4 +1,3 @@
-#include "transport/merged.h"
 
 #include "base/parallel.h"
 #include "mesh/mesher.h"

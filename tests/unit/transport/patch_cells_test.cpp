@@ -1,6 +1,5 @@
-#include "transport/patch_cells.h"
-
 #include "base/sampling.h"
+#include "transport/smoothing.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

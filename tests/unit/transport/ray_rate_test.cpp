@@ -1,7 +1,6 @@
-#include "transport/ray_rate.h"
-
 #include "mesh/mesher.h"
 #include "support/scenes.h"
+#include "transport/pair_sampler.h"
 #include "visibility/occluder.h"
 
 #include <gtest/gtest.h>

@@ -5,10 +5,8 @@
 #include "scene/coverings.h"
 #include "support/assembled.h"
 #include "support/scenes.h"
-#include "transport/bright_patches.h"
-#include "transport/ray_counts.h"
 #include "transport/ray_transport.h"
-#include "transport/row_blocks.h"
+#include "transport/row_tracer.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Geometry>

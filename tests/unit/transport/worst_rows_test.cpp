@@ -1,4 +1,4 @@
-#include "transport/worst_rows.h"
+#include "transport/closure.h"
 
 #include <gtest/gtest.h>
 

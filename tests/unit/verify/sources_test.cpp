@@ -2,9 +2,8 @@
 #include "lighting/sky.h"
 #include "scene/photometric_web.h"
 #include "support/daylight_office.h"
+#include "verify/delta_sources.h"
 #include "verify/path_tracer.h"
-#include "verify/photometry.h"
-#include "verify/sky_radiance.h"
 
 #include <array>
 #include <cmath>

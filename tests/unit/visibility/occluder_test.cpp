@@ -2,7 +2,7 @@
 
 #include "base/sampling.h"
 #include "support/scenes.h"
-#include "visibility/convex_hull.h"
+#include "visibility/flat_polygon.h"
 
 #include <gtest/gtest.h>
 

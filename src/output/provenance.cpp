@@ -1,7 +1,0 @@
-#include "patchlight/output/provenance.h"
-
-namespace patchlight {
-
-const char* version() { return PATCHLIGHT_VERSION; }
-
-}  // namespace patchlight

@@ -1,0 +1,254 @@
+#include "transport/tiles.h"
+
+#include "base/parallel.h"
+#include "base/target_clones.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace patchlight {
+
+PatchIndex entry_parts(const ExchangeAreas& S) { return Tiles::blocks(S); }
+
+ExchangeAreas changed(ExchangeAreas S, const Change& value) {
+  const PatchIndex blocks = Tiles::blocks(S);
+  parallel_for(blocks, [&](std::size_t row) {
+    const auto I = static_cast<PatchIndex>(row);
+    for (PatchIndex J = I; J < blocks; ++J) {
+      const std::span<float> tile = Tiles::of(S, I, J);
+      for (PatchIndex k = 0; k < tile_edge * tile_edge; ++k) {
+        if (tile[k] == 0) continue;
+        tile[k] = narrow_toward_zero(
+            value(I * tile_edge + k / tile_edge, J * tile_edge + k % tile_edge, static_cast<double>(tile[k])));
+      }
+    }
+  });
+  return S;
+}
+
+namespace {
+
+constexpr std::size_t width = 8;  // patches side by side: doubles of an AVX-512 register
+
+// Doubles of one register. Wider vectors than the machine has, compilers keep in memory.
+template <std::size_t lanes>
+using Doubles [[gnu::vector_size(sizeof(double) * lanes), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
+
+// Floats fetched ahead of their use: about what arrives in the time of a memory access.
+constexpr std::size_t ahead = 2048;
+
+// Doubles of a register of what the whole library is compiled for.
+#if defined(__AVX512F__)
+constexpr std::size_t plain_lanes = 8;
+#elif defined(__AVX__)
+constexpr std::size_t plain_lanes = 4;
+#else
+constexpr std::size_t plain_lanes = 2;
+#endif
+
+// Some of the bands of a packed field.
+struct BandRange {
+  std::size_t first;
+  std::size_t of;
+};
+
+// Rows at once, so that b_J and out_J are loaded a quarter as often.
+constexpr std::size_t tile_rows = 4;
+
+// Bands for which a row is turned into doubles once: what these take of b_J and out_J stays in the nearest cache.
+constexpr std::size_t most_bands = 18;
+
+// Bands at once whose sums fit into the registers: AVX-512 has 32 of them, what is narrower 16.
+template <std::size_t lanes>
+constexpr std::size_t bands_at_once = lanes == width ? 3 : 2;
+
+// One value for each of the rows and bands at once.
+template <std::size_t lanes, std::size_t bands>
+using Block = Doubles<lanes>[tile_rows][bands];
+
+// Calls use(k, band) for each of them: unrolled also where a build does not do so by itself, as a block has to stay in
+// registers.
+template <std::size_t bands, typename Use>
+PATCHLIGHT_INLINE void for_block(const Use& use) {
+  PATCHLIGHT_UNROLL
+  for (std::size_t k = 0; k < tile_rows; ++k) {
+    PATCHLIGHT_UNROLL
+    for (std::size_t band = 0; band < bands; ++band) use(k, band);
+  }
+}
+
+// s_k (columns) b_J into the sums, and s_k (columns) b_I onto out_J, for some columns of one band after the other.
+template <std::size_t lanes, std::size_t bands, bool gather, bool push>
+PATCHLIGHT_INLINE void multiply_columns(const double* wide, const Block<lanes, bands>& b, const double* b_J,
+                                        Block<lanes, bands>& sums, double* out_J) {
+  using Lanes = Doubles<lanes>;
+  Lanes s[tile_rows];
+  PATCHLIGHT_UNROLL
+  for (std::size_t k = 0; k < tile_rows; ++k) s[k] = *reinterpret_cast<const Lanes*>(wide + k * tile_edge);
+  PATCHLIGHT_UNROLL
+  for (std::size_t band = 0; band < bands; ++band) {
+    if constexpr (gather) {
+      const Lanes from = *reinterpret_cast<const Lanes*>(b_J + band * width);
+      PATCHLIGHT_UNROLL
+      for (std::size_t k = 0; k < tile_rows; ++k) sums[k][band] += s[k] * from;
+    }
+    if constexpr (push) {
+      Lanes* const out = reinterpret_cast<Lanes*>(out_J + band * width);
+      Lanes sum = *out;
+      PATCHLIGHT_UNROLL
+      for (std::size_t k = 0; k < tile_rows; ++k) sum += s[k] * b[k][band];
+      *out = sum;
+    }
+  }
+}
+
+// Rows r to r + 3 of a tile, in double, with `bands` bands from range.first on: of every eight columns those from
+// `part` on that fill a register.
+template <std::size_t lanes, std::size_t bands, bool gather, bool push>
+PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t part, const BandRange range,
+                                const TileProduct product) {
+  const auto place_of_sums = [&](std::size_t k, std::size_t band) {
+    double* const sums_r = product.sums_I + (r * range.of + range.first) * width + part;
+    return reinterpret_cast<Doubles<lanes>*>(sums_r + (k * range.of + band) * width);
+  };
+  Block<lanes, bands> sums;
+  if constexpr (gather)
+    for_block<bands>([&](std::size_t k, std::size_t band) { sums[k][band] = *place_of_sums(k, band); });
+  Block<lanes, bands> b;
+  if constexpr (push) {
+    // Where row r is in a packed block; the next rows and bands follow.
+    const double* const b_r = product.b_I + (r / width * range.of + range.first) * width + r % width;
+    for_block<bands>([&](std::size_t k, std::size_t band) { b[k][band] = Doubles<lanes>{} + b_r[band * width + k]; });
+  }
+  for (std::size_t c = 0; c < tile_edge; c += width) {
+    const std::size_t place = c * range.of + range.first * width + part;
+    multiply_columns<lanes, bands, gather, push>(wide + c + part, b, product.b_J + place, sums, product.out_J + place);
+  }
+  if constexpr (gather)
+    for_block<bands>([&](std::size_t k, std::size_t band) { *place_of_sums(k, band) = sums[k][band]; });
+}
+
+// Four rows with `bands` bands. What is added up is the same for registers of any size.
+template <std::size_t lanes, std::size_t bands, bool gather, bool push>
+PATCHLIGHT_INLINE void multiply_parts(const double* wide, std::size_t r, const BandRange range,
+                                      const TileProduct product) {
+  for (std::size_t part = 0; part < width; part += lanes)
+    multiply<lanes, bands, gather, push>(wide, r, part, range, product);
+}
+
+// Four rows with the bands [first, end).
+template <std::size_t lanes, bool gather, bool push>
+PATCHLIGHT_INLINE void multiply_rows(const double* wide, std::size_t r, BandRange range, std::size_t end,
+                                     const TileProduct product) {
+  constexpr std::size_t some = bands_at_once<lanes>;
+  for (; range.first + some <= end; range.first += some)
+    multiply_parts<lanes, some, gather, push>(wide, r, range, product);
+  if constexpr (some > 2)
+    if (end - range.first == 2) multiply_parts<lanes, 2, gather, push>(wide, r, range, product);
+  if (end - range.first == 1) multiply_parts<lanes, 1, gather, push>(wide, r, range, product);
+}
+
+template <std::size_t lanes, bool gather, bool push>
+PATCHLIGHT_INLINE void for_bands(const float* tile, int bands, const TileProduct& product) {
+  const auto of = static_cast<std::size_t>(bands);
+  for (std::size_t first = 0; first < of; first += most_bands) {
+    for (std::size_t r = 0; r < tile_edge; r += tile_rows) {
+      // The rows in double, and those of later on their way into the cache, be it beyond the last tile.
+      alignas(64) double wide[tile_rows * tile_edge];
+      const auto later = reinterpret_cast<std::uintptr_t>(tile + r * tile_edge) + ahead * sizeof(float);
+      for (std::size_t line = 0; line < tile_rows * tile_edge * sizeof(float); line += 64) {
+        __builtin_prefetch(reinterpret_cast<const void*>(later + line));
+      }
+      for (std::size_t c = 0; c < tile_rows * tile_edge; ++c) wide[c] = static_cast<double>(tile[r * tile_edge + c]);
+      multiply_rows<lanes, gather, push>(wide, r, {first, of}, std::min(of, first + most_bands), product);
+    }
+  }
+}
+
+// The product by registers of `lanes` doubles: b_J and sums_I are looked at where it gathers, b_I and out_J where it
+// pushes.
+template <std::size_t lanes>
+PATCHLIGHT_INLINE void product_by(const float* tile, int bands, const TileProduct& product) {
+  if (product.out_J == nullptr) return for_bands<lanes, true, false>(tile, bands, product);
+  if (product.sums_I == nullptr) return for_bands<lanes, false, true>(tile, bands, product);
+  for_bands<lanes, true, true>(tile, bands, product);
+}
+
+// A version for each instruction set, by the width of its registers.
+PATCHLIGHT_TARGET_PLAIN void product_here(const float* tile, int bands, const TileProduct& product) {
+  product_by<plain_lanes>(tile, bands, product);
+}
+#ifdef PATCHLIGHT_HAS_TARGETS
+PATCHLIGHT_TARGET_AVX2 void product_here(const float* tile, int bands, const TileProduct& product) {
+  product_by<4>(tile, bands, product);
+}
+PATCHLIGHT_TARGET_AVX512 void product_here(const float* tile, int bands, const TileProduct& product) {
+  product_by<8>(tile, bands, product);
+}
+#endif
+
+}  // namespace
+
+void gather_tile(const float* tile, int bands, const double* b_J, double* sums_I) {
+  product_here(tile, bands, {nullptr, b_J, sums_I, nullptr});
+}
+
+void push_tile(const float* tile, int bands, const double* b_I, double* out_J) {
+  product_here(tile, bands, {b_I, nullptr, nullptr, out_J});
+}
+
+void multiply_tile(const float* tile, int bands, const TileProduct& product) { product_here(tile, bands, product); }
+
+RowSums::RowSums(int bands) : lanes(tile_edge * static_cast<std::size_t>(bands) * width, 0.0) {}
+
+void add_sums(const RowSums& sums, int bands, double* out_I) {
+  const auto of = static_cast<std::size_t>(bands);
+  for (std::size_t r = 0; r < tile_edge; ++r) {
+    for (std::size_t band = 0; band < of; ++band) {
+      const double* const v = &sums.lanes[(r * of + band) * width];
+      out_I[(r / width * of + band) * width + r % width] +=
+          ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+    }
+  }
+}
+
+PackedField summed(PackedField parts, PatchIndex count) {
+  const std::size_t size = parts.values.size() / count;
+  double* const sum = parts.values.data();
+  for (std::size_t part = 1; part < count; ++part) {
+    for (std::size_t k = 0; k < size; ++k) sum[k] += sum[part * size + k];
+  }
+  parts.values.resize(size);
+  return parts;
+}
+
+PackedField::PackedField(PatchIndex blocks, int bands_of_each)
+    : bands(bands_of_each), values(static_cast<std::size_t>(blocks) * tile_edge * bands_of_each, 0.0) {}
+
+PackedField::PackedField(const FieldView& field, PatchIndex blocks)
+    : PackedField(blocks, static_cast<int>(field.cols())) {
+  set_rows(0, field);
+}
+
+Field PackedField::rows(Eigen::Index begin, Eigen::Index rows) const {
+  Field field(rows, bands);
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    const auto i = static_cast<std::size_t>(begin + r);
+    for (int band = 0; band < bands; ++band) {
+      field(r, band) = values[(i / width * bands + static_cast<std::size_t>(band)) * width + i % width];
+    }
+  }
+  return field;
+}
+
+void PackedField::set_rows(Eigen::Index begin, const FieldView& field) {
+  for (Eigen::Index r = 0; r < field.rows(); ++r) {
+    const auto i = static_cast<std::size_t>(begin + r);
+    for (int band = 0; band < bands; ++band) {
+      values[(i / width * bands + static_cast<std::size_t>(band)) * width + i % width] = field(r, band);
+    }
+  }
+}
+
+}  // namespace patchlight
