@@ -220,8 +220,8 @@ Field gap_errors(const PatchMesh& mesh, const RayTransport& transport, const Sol
 
 namespace {
 
-// How far off what is followed may be, of what the reflections add to it.
-constexpr double tolerance = 0.05;
+// The largest error of a propagated error, as a share of its reflected part.
+constexpr double bar_tolerance = 0.05;
 
 // What bands that are solved leave out of those that they span: the others are combined, and checked.
 constexpr double told = 0.3;
@@ -231,7 +231,7 @@ Solution solution_of(const TransportOperator& transport, const RadiosityProblem&
   // Few directions: by a million patches these are what takes most of the memory.
   return solve(transport, problem,
                {.solver = usual_solver(transport, problem),
-                .relative_error = tolerance,
+                .relative_error = bar_tolerance,
                 .restart = 8,
                 .largest_row_sum = largest_row_sum,
                 .patch_bounds = false});
@@ -273,7 +273,7 @@ Combination combined(const KnownBands& known, const RadiosityProblem& of_band, d
   const Eigen::VectorXd residual = right - left * c;
   const double added = ((known.radiosity.matrix() * c).array() * root - right.array()).matrix().norm();
   return {(known.irradiance.matrix() * c).array(), residual.array() / root,
-          residual.norm() / (1 - kappa) <= tolerance * added};
+          residual.norm() / (1 - kappa) <= bar_tolerance * added};
 }
 
 // Light y = E + R F y in many bands, of which few are solved.

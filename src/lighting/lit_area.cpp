@@ -30,7 +30,7 @@ struct Pane {
 };
 
 // Where a horizontal line cuts a convex outline.
-Interval cut(const Outline& outline, double y) {
+Interval cut(const PlanarOutline& outline, double y) {
   Interval found{1, 0};
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const Eigen::Vector2d& a = outline[k];
@@ -81,7 +81,7 @@ struct Edge {
   Eigen::Vector2d from, way;
 };
 
-void add_edges(std::vector<Edge>& edges, const Outline& outline) {
+void add_edges(std::vector<Edge>& edges, const PlanarOutline& outline) {
   for (std::size_t k = 0; k < outline.size(); ++k)
     edges.push_back({outline[k], outline[(k + 1) % outline.size()] - outline[k]});
 }
@@ -107,7 +107,7 @@ std::vector<double> event_heights(const std::vector<Edge>& edges) {
 
 // By strips between the heights at which edges begin or cross: in each the lit length is linear in the height, so that
 // its middle gives the mean.
-Spectrum area_by_strips(const Outline& region, const std::vector<Shade>& shades, Eigen::Index bands) {
+Spectrum area_by_strips(const PlanarOutline& region, const std::vector<Shade>& shades, Eigen::Index bands) {
   std::vector<Edge> edges;
   add_edges(edges, region);
   for (const Shade& shade : shades) add_edges(edges, shade.outline);
@@ -137,12 +137,12 @@ struct Halving {
   Eigen::Index bands = 0;
   std::size_t cuts = 0;  // made so far
 
-  std::optional<Spectrum> lit(const Outline& region, const std::vector<Shade>& shades, int depth);
-  std::optional<Spectrum> lit_in_halves(const Outline& region, const std::vector<Shade>& shades, int depth);
+  std::optional<Spectrum> lit(const PlanarOutline& region, const std::vector<Shade>& shades, int depth);
+  std::optional<Spectrum> lit_in_halves(const PlanarOutline& region, const std::vector<Shade>& shades, int depth);
 };
 
 // Shades lie inside the region.
-std::optional<Spectrum> Halving::lit(const Outline& region, const std::vector<Shade>& shades, int depth) {
+std::optional<Spectrum> Halving::lit(const PlanarOutline& region, const std::vector<Shade>& shades, int depth) {
   const double whole = area_of(region);
   std::vector<Shade> in_part;
   Spectrum everywhere = Spectrum::Ones(bands);
@@ -166,7 +166,8 @@ std::optional<Spectrum> Halving::lit(const Outline& region, const std::vector<Sh
 }
 
 // Cut across the longer side of the box around the region.
-std::optional<Spectrum> Halving::lit_in_halves(const Outline& region, const std::vector<Shade>& shades, int depth) {
+std::optional<Spectrum> Halving::lit_in_halves(const PlanarOutline& region, const std::vector<Shade>& shades,
+                                               int depth) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : region) box.extend(corner);
   Eigen::Vector2d along = box.sizes().x() > box.sizes().y() ? Eigen::Vector2d::UnitY() : Eigen::Vector2d::UnitX();
@@ -186,7 +187,7 @@ std::optional<Spectrum> Halving::lit_in_halves(const Outline& region, const std:
 
 }  // namespace
 
-double area_of(const Outline& outline) {
+double area_of(const PlanarOutline& outline) {
   double sum = 0;
   for (std::size_t k = 1; k + 1 < outline.size(); ++k)
     sum += cross(outline[k] - outline[0], outline[k + 1] - outline[0]) / 2;
@@ -194,8 +195,8 @@ double area_of(const Outline& outline) {
 }
 
 // Sutherland and Hodgman 1974.
-Outline left_of(const Outline& outline, const Eigen::Vector2d& on_line, const Eigen::Vector2d& along) {
-  Outline left;
+PlanarOutline left_of(const PlanarOutline& outline, const Eigen::Vector2d& on_line, const Eigen::Vector2d& along) {
+  PlanarOutline left;
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const Eigen::Vector2d& a = outline[k];
     const Eigen::Vector2d& b = outline[(k + 1) % outline.size()];
@@ -207,10 +208,10 @@ Outline left_of(const Outline& outline, const Eigen::Vector2d& on_line, const Ei
   return left;
 }
 
-std::optional<Spectrum> lit_area(const Outline& region, const std::vector<Shade>& shades, Eigen::Index bands) {
+std::optional<Spectrum> lit_area(const PlanarOutline& region, const std::vector<Shade>& shades, Eigen::Index bands) {
   std::vector<Shade> inside;
   for (const Shade& shade : shades) {
-    Outline outline = shade.outline;
+    PlanarOutline outline = shade.outline;
     for (std::size_t k = 0; k < region.size() && !outline.empty(); ++k)
       outline = left_of(outline, region[k], region[(k + 1) % region.size()] - region[k]);
     if (outline.size() > 2) inside.push_back({std::move(outline), shade.transmittance});

@@ -52,15 +52,15 @@ ShadowFrame shadow_frame_of(const Receiver& patch) {
 }
 
 // Of points in the plane, counter-clockwise in the frame.
-Outline outline_of(std::span<const Point> corners, const ShadowFrame& frame) {
-  Outline outline;
+PlanarOutline outline_of(std::span<const Point> corners, const ShadowFrame& frame) {
+  PlanarOutline outline;
   for (const Point& corner : corners) outline.push_back(frame.in_plane(corner));
   if (area_of(outline) < 0) std::reverse(outline.begin(), outline.end());
   return outline;
 }
 
 // True when all of a region lies within an outline.
-bool holds(const Outline& outline, const Outline& region) {
+bool holds(const PlanarOutline& outline, const PlanarOutline& region) {
   if (outline.size() < 3) return false;
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const Eigen::Vector2d& a = outline[k];
@@ -218,7 +218,7 @@ std::optional<Shades::Shadows> Shades::shadows_on(const Receiver& patch, const L
   Shadows shadows{shadow_frame_of(patch), {}, {}, {}};
   const ShadowFrame& frame = shadows.frame;
   const PolygonIndex own = patch.place(0.5, 0.5).polygon;
-  const Outline region = outline_of(patch.corners, frame);
+  const PlanarOutline region = outline_of(patch.corners, frame);
 
   // 1. What lies on the patch takes its place.
   for (const PolygonIndex p : coverings_.over_side(own, patch.side)) {
@@ -257,7 +257,7 @@ std::optional<Spectrum> Shades::transmittance(const Receiver& patch, const Light
   auto shadows = shadows_on(patch, light);
   if (!shadows) return std::nullopt;
   shadows->let_through(panes_, frame.origin, light);
-  const Outline region = outline_of(patch.corners, frame);
+  const PlanarOutline region = outline_of(patch.corners, frame);
   const auto exposed = lit_area(region, shadows->covers, 1);
   const auto lit = lit_area(region, shadows->all, bands_);
   if (!exposed || !lit) return std::nullopt;
@@ -269,7 +269,7 @@ std::optional<Spectrum> Shades::transmittance(const Receiver& patch, const Light
 // tell the mean right up to the third order; else it is as of what is evenly distributed between the extremes.
 std::optional<LitPart> Shades::lit_part(Shadows& shadows, const std::array<Point, 4>& corners,
                                         const LightPlace& light) const {
-  const Outline region = outline_of(corners, shadows.frame);
+  const PlanarOutline region = outline_of(corners, shadows.frame);
   const auto exposed = lit_area(region, shadows.covers, 1);
   const auto lit_as_from = [&](const Point& place) {
     shadows.let_through(panes_, place, light);

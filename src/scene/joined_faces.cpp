@@ -177,7 +177,7 @@ std::optional<Polygon> joined(const Scene& scene, const Loops& loops, const std:
   double area = 0;
   for (const PolygonIndex p : members) area += area_vector(corner_points(scene, p)).norm();
   const Pieces pieces = pieces_of(scene, whole, width);
-  if (pieces.kind || pieces.polygons.size() != 1) return std::nullopt;
+  if (pieces.defect || pieces.polygons.size() != 1) return std::nullopt;
   std::vector<Point> points;
   for (const std::uint32_t corner : whole.corners) points.push_back(scene.vertices[corner]);
   // What is turned over in part has less area than its faces.

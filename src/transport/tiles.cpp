@@ -29,14 +29,14 @@ ExchangeAreas changed(ExchangeAreas S, const Change& value) {
 
 namespace {
 
-constexpr std::size_t width = 8;  // patches side by side: doubles of an AVX-512 register
+constexpr std::size_t simd_width = 8;  // patches side by side: doubles of an AVX-512 register
 
 // Doubles of one register. Wider vectors than the machine has, compilers keep in memory.
 template <std::size_t lanes>
 using Doubles [[gnu::vector_size(sizeof(double) * lanes), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
 
 // Floats fetched ahead of their use: about what arrives in the time of a memory access.
-constexpr std::size_t ahead = 2048;
+constexpr std::size_t prefetch_distance = 2048;
 
 // Doubles of a register of what the whole library is compiled for.
 #if defined(__AVX512F__)
@@ -61,7 +61,7 @@ constexpr std::size_t most_bands = 18;
 
 // Bands at once whose sums fit into the registers: AVX-512 has 32 of them, what is narrower 16.
 template <std::size_t lanes>
-constexpr std::size_t bands_at_once = lanes == width ? 3 : 2;
+constexpr std::size_t bands_at_once = lanes == simd_width ? 3 : 2;
 
 // One value for each of the rows and bands at once.
 template <std::size_t lanes, std::size_t bands>
@@ -89,12 +89,12 @@ PATCHLIGHT_INLINE void multiply_columns(const double* wide, const Block<lanes, b
   PATCHLIGHT_UNROLL
   for (std::size_t band = 0; band < bands; ++band) {
     if constexpr (gather) {
-      const Lanes from = *reinterpret_cast<const Lanes*>(b_J + band * width);
+      const Lanes from = *reinterpret_cast<const Lanes*>(b_J + band * simd_width);
       PATCHLIGHT_UNROLL
       for (std::size_t k = 0; k < tile_rows; ++k) sums[k][band] += s[k] * from;
     }
     if constexpr (push) {
-      Lanes* const out = reinterpret_cast<Lanes*>(out_J + band * width);
+      Lanes* const out = reinterpret_cast<Lanes*>(out_J + band * simd_width);
       Lanes sum = *out;
       PATCHLIGHT_UNROLL
       for (std::size_t k = 0; k < tile_rows; ++k) sum += s[k] * b[k][band];
@@ -109,8 +109,8 @@ template <std::size_t lanes, std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t part, const BandRange range,
                                 const TileProduct product) {
   const auto place_of_sums = [&](std::size_t k, std::size_t band) {
-    double* const sums_r = product.sums_I + (r * range.of + range.first) * width + part;
-    return reinterpret_cast<Doubles<lanes>*>(sums_r + (k * range.of + band) * width);
+    double* const sums_r = product.sums_I + (r * range.of + range.first) * simd_width + part;
+    return reinterpret_cast<Doubles<lanes>*>(sums_r + (k * range.of + band) * simd_width);
   };
   Block<lanes, bands> sums;
   if constexpr (gather)
@@ -118,11 +118,12 @@ PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t p
   Block<lanes, bands> b;
   if constexpr (push) {
     // Where row r is in a packed block; the next rows and bands follow.
-    const double* const b_r = product.b_I + (r / width * range.of + range.first) * width + r % width;
-    for_block<bands>([&](std::size_t k, std::size_t band) { b[k][band] = Doubles<lanes>{} + b_r[band * width + k]; });
+    const double* const b_r = product.b_I + (r / simd_width * range.of + range.first) * simd_width + r % simd_width;
+    for_block<bands>(
+        [&](std::size_t k, std::size_t band) { b[k][band] = Doubles<lanes>{} + b_r[band * simd_width + k]; });
   }
-  for (std::size_t c = 0; c < tile_edge; c += width) {
-    const std::size_t place = c * range.of + range.first * width + part;
+  for (std::size_t c = 0; c < tile_edge; c += simd_width) {
+    const std::size_t place = c * range.of + range.first * simd_width + part;
     multiply_columns<lanes, bands, gather, push>(wide + c + part, b, product.b_J + place, sums, product.out_J + place);
   }
   if constexpr (gather)
@@ -133,7 +134,7 @@ PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t p
 template <std::size_t lanes, std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply_parts(const double* wide, std::size_t r, const BandRange range,
                                       const TileProduct product) {
-  for (std::size_t part = 0; part < width; part += lanes)
+  for (std::size_t part = 0; part < simd_width; part += lanes)
     multiply<lanes, bands, gather, push>(wide, r, part, range, product);
 }
 
@@ -156,7 +157,7 @@ PATCHLIGHT_INLINE void for_bands(const float* tile, int bands, const TileProduct
     for (std::size_t r = 0; r < tile_edge; r += tile_rows) {
       // The rows in double, and those of later on their way into the cache, be it beyond the last tile.
       alignas(64) double wide[tile_rows * tile_edge];
-      const auto later = reinterpret_cast<std::uintptr_t>(tile + r * tile_edge) + ahead * sizeof(float);
+      const auto later = reinterpret_cast<std::uintptr_t>(tile + r * tile_edge) + prefetch_distance * sizeof(float);
       for (std::size_t line = 0; line < tile_rows * tile_edge * sizeof(float); line += 64) {
         __builtin_prefetch(reinterpret_cast<const void*>(later + line));
       }
@@ -175,7 +176,7 @@ PATCHLIGHT_INLINE void product_by(const float* tile, int bands, const TileProduc
   for_bands<lanes, true, true>(tile, bands, product);
 }
 
-// A version for each instruction set, by the width of its registers.
+// A version for each instruction set, by the simd_width of its registers.
 PATCHLIGHT_TARGET_PLAIN void product_here(const float* tile, int bands, const TileProduct& product) {
   product_by<plain_lanes>(tile, bands, product);
 }
@@ -200,14 +201,14 @@ void push_tile(const float* tile, int bands, const double* b_I, double* out_J) {
 
 void multiply_tile(const float* tile, int bands, const TileProduct& product) { product_here(tile, bands, product); }
 
-RowSums::RowSums(int bands) : lanes(tile_edge * static_cast<std::size_t>(bands) * width, 0.0) {}
+RowSums::RowSums(int bands) : lanes(tile_edge * static_cast<std::size_t>(bands) * simd_width, 0.0) {}
 
 void add_sums(const RowSums& sums, int bands, double* out_I) {
   const auto of = static_cast<std::size_t>(bands);
   for (std::size_t r = 0; r < tile_edge; ++r) {
     for (std::size_t band = 0; band < of; ++band) {
-      const double* const v = &sums.lanes[(r * of + band) * width];
-      out_I[(r / width * of + band) * width + r % width] +=
+      const double* const v = &sums.lanes[(r * of + band) * simd_width];
+      out_I[(r / simd_width * of + band) * simd_width + r % simd_width] +=
           ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
     }
   }
@@ -236,7 +237,7 @@ Field PackedField::rows(Eigen::Index begin, Eigen::Index rows) const {
   for (Eigen::Index r = 0; r < rows; ++r) {
     const auto i = static_cast<std::size_t>(begin + r);
     for (int band = 0; band < bands; ++band) {
-      field(r, band) = values[(i / width * bands + static_cast<std::size_t>(band)) * width + i % width];
+      field(r, band) = values[(i / simd_width * bands + static_cast<std::size_t>(band)) * simd_width + i % simd_width];
     }
   }
   return field;
@@ -246,7 +247,7 @@ void PackedField::set_rows(Eigen::Index begin, const FieldView& field) {
   for (Eigen::Index r = 0; r < field.rows(); ++r) {
     const auto i = static_cast<std::size_t>(begin + r);
     for (int band = 0; band < bands; ++band) {
-      values[(i / width * bands + static_cast<std::size_t>(band)) * width + i % width] = field(r, band);
+      values[(i / simd_width * bands + static_cast<std::size_t>(band)) * simd_width + i % simd_width] = field(r, band);
     }
   }
 }

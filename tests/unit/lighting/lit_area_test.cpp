@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-const Outline square{Vector2d(0, 0), Vector2d(1, 0), Vector2d(1, 1), Vector2d(0, 1)};
+const PlanarOutline square{Vector2d(0, 0), Vector2d(1, 0), Vector2d(1, 1), Vector2d(0, 1)};
 
-Outline rectangle(double x0, double x1, double y0, double y1) {
+PlanarOutline rectangle(double x0, double x1, double y0, double y1) {
   return {Vector2d(x0, y0), Vector2d(x1, y0), Vector2d(x1, y1), Vector2d(x0, y1)};
 }
 
@@ -69,7 +69,7 @@ TEST(LitArea, OfRandomTrianglesIsThatOfPoints) {
     const auto random = [&](std::uint32_t k, std::uint32_t d) { return hash({count, k, d}) * 0x1p-32; };
     for (std::uint32_t k = 0; k < count; ++k) {
       const Vector2d middle(random(k, 0), random(k, 1));
-      Outline outline;
+      PlanarOutline outline;
       for (std::uint32_t c = 0; c < 3; ++c)
         outline.push_back(middle + 0.4 * Vector2d(random(k, 2 + c) - 0.5, random(k, 5 + c) - 0.5));
       if (area_of(outline) < 0) std::swap(outline[0], outline[1]);
