@@ -32,7 +32,7 @@ html_show_copyright = False
 
 # The menu: a folder or page each, in this order.
 MENU = ["getting-started", "tutorials", "how-to", "concepts", "gallery", "reference", "reference/cli", "reference/formats", "reference/outputs",
-        "troubleshooting", "faq", "theory", "benchmarks", "developer", "CONTRIBUTING", "SECURITY"]
+        "troubleshooting", "theory", "benchmarks", "developer", "CONTRIBUTING", "SECURITY"]
 
 
 def titled(name):
