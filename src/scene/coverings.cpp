@@ -29,36 +29,6 @@ constexpr double same_area = 1 + 1e-9;
 // Pieces of a wall leave no more than a hundredth of a pane free that is drawn over several of them.
 constexpr double whole_wall = 0.99;
 
-using Triangle = std::array<Point, 3>;
-
-// Does nothing but an edge of a triangle lie before a line in its plane, but for rounding as of clip_to_half_space()?
-bool lies_beyond(const Triangle& triangle, const Point& on_line, const Vector& inward) {
-  constexpr double rounding = 1e-9;
-  const double length = inward.norm();
-  int on_it = 0;
-  for (const Point& corner : triangle) {
-    const Vector offset = corner - on_line;
-    const double height = inward.dot(offset);
-    const double nothing = rounding * length * offset.norm();
-    if (height > nothing) return false;
-    on_it += height >= -nothing;
-  }
-  return on_it < 3;
-}
-
-double overlap(const Triangle& a, const Triangle& b, const Vector& normal) {
-  // Inward normals of b's edges, whichever way b turns.
-  const double turn = area_vector(b).dot(normal) > 0 ? 1 : -1;
-  std::array<Vector, 3> inward;
-  for (std::size_t k = 0; k < 3; ++k) {
-    inward[k] = turn * normal.cross(b[(k + 1) % 3] - b[k]);
-    if (lies_beyond(a, b[k], inward[k])) return 0;
-  }
-  std::vector<Point> left(a.begin(), a.end());
-  for (std::size_t k = 0; k < 3 && left.size() > 2; ++k) left = clip_to_half_space(left, b[k], inward[k]);
-  return left.size() > 2 ? area_vector(left).norm() : 0;
-}
-
 // A polygon over which others are looked for.
 struct Lower {
   std::vector<Point> corners;
@@ -94,18 +64,6 @@ bool in_one_plane(const std::vector<Point>& smaller, const Lower& larger, double
          std::all_of(smaller.begin(), smaller.end(), [&](const Point& corner) {
            return std::abs(larger.normal.dot(corner - larger.corners[0])) <= tolerance;
          });
-}
-
-// The area that triangles in a plane with this normal have in common, or more than `enough` of it, square metres.
-double overlap(std::span<const Triangle> some, std::span<const Triangle> others, const Vector& normal, double enough) {
-  double area = 0;
-  for (const Triangle& first : some) {
-    for (const Triangle& second : others) {
-      area += overlap(first, second, normal);
-      if (area > enough) return area;
-    }
-  }
-  return area;
 }
 
 // The triangles of polygons with many corners. Many panes in one wall ask for those of the wall.
@@ -164,8 +122,8 @@ std::vector<Covered> Search::of(PolygonIndex polygon) const {
   std::vector<Triangle> own;  // once they are needed
   const auto overlap_with = [&](PolygonIndex upper, double enough) {
     if (own.empty()) own = triangles(polygon);
-    if (!known_triangles[upper].empty()) return overlap(own, known_triangles[upper], lower.normal, enough);
-    return overlap(own, triangles(upper), lower.normal, enough);
+    if (!known_triangles[upper].empty()) return common_area(own, known_triangles[upper], lower.normal, enough);
+    return common_area(own, triangles(upper), lower.normal, enough);
   };
   const bool is_pane = is_opening(scene, polygon);
   const double most_area = is_pane ? std::numeric_limits<double>::infinity() : same_area * lower.area;

@@ -36,8 +36,6 @@ constexpr std::size_t most_corners_in_planes = 64;
 // How far the unit normals of a rim and of a face under it may differ; corners decide whether they share a plane.
 constexpr double largest_tilt = 0.05;
 
-using Triangle = std::array<Point, 3>;
-
 // The rims of one shell as outlines of what would close it, which walk along each edge against its polygon. Nothing
 // where rims meet in a vertex.
 std::optional<std::vector<std::vector<Point>>> outlines_of(const Scene& scene, const std::vector<RimEdge>& edges) {

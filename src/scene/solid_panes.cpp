@@ -3,12 +3,14 @@
 #include "base/rounded.h"
 #include "scene/face_tree.h"
 #include "scene/model_face.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -17,17 +19,23 @@
 namespace patchlight {
 namespace {
 
-constexpr double thickest_pane = 0.05;    // metres
+constexpr double thickest_pane = 0.05;    // meters
 constexpr double most_of_size = 0.1;      // of the root of the area
-constexpr double same_place = 0.01;       // of the same: how far corners may lie from being opposite each other
 constexpr double parallel_within = 1e-4;  // cosine of the angle between normals, less than 1
+
+// The share of a face that has to lie opposite faces of the other side: corners may be off by a hundredth of its size.
+constexpr double least_opposite = 0.96;
+
+// Pairs of faces with smaller shares in common touch at an edge.
+constexpr double least_common = 1e-3;
 
 // A clear face of which there may be a second one.
 struct Face {
   PolygonIndex polygon = no_polygon;
-  std::vector<Point> corners;
+  std::vector<Triangle> triangles;
   Vector normal;
-  double size = 0;  // m
+  Point middle;
+  double area = 0;  // m^2
 };
 
 // Those with one front: a face with a material on its back is two faces in one place, a sheet already.
@@ -38,66 +46,119 @@ std::vector<Face> single_faces(const Scene& scene) {
     if (!is_opening(scene, p) || polygon.back_material) continue;
     if ((scene.materials[polygon.material].exitance > 0).any()) continue;
     const std::vector<Point> corners = corner_points(scene, p);
-    faces.push_back({p, corners, front_normal(scene, p), std::sqrt(area_vector(corners).norm())});
+    faces.push_back(
+        {p, triangles_of(corners), front_normal(scene, p), area_centroid(corners), area_vector(corners).norm()});
   }
   return faces;
 }
 
-// How thick the pane is whose faces these are, in the mean of its corners; 0: they are not, or a corner of one has none
-// of the other opposite.
-double thickness_between(const Face& first, const Face& second) {
-  if (first.corners.size() != second.corners.size() || !(first.normal.dot(second.normal) < parallel_within - 1))
-    return 0;
-  const double thickest = std::min(thickest_pane, most_of_size * first.size);
-  double sum = 0;
-  for (const Point& corner : first.corners) {
-    const auto is_opposite = [&](const Point& other) {
-      const Vector way = corner - other;
-      const double depth = first.normal.dot(way);
-      return depth > 0 && depth <= thickest && (way - depth * first.normal).norm() <= same_place * first.size;
-    };
-    const auto opposite = std::find_if(second.corners.begin(), second.corners.end(), is_opposite);
-    if (opposite == second.corners.end()) return 0;
-    sum += first.normal.dot(corner - *opposite);
-  }
-  return sum / static_cast<double>(first.corners.size());
+// How far behind the middle of a face the plane of another one is; 0 where that does not face away.
+double depth_between(const Face& face, const Face& other) {
+  const double cosine = face.normal.dot(other.normal);
+  if (!(cosine < parallel_within - 1)) return 0;
+  return std::max(0.0, other.normal.dot(face.middle - other.middle) / cosine);
 }
 
-// Two faces by their places in a list.
-struct SolidPane {
-  std::int64_t thickness = 0;  // nanometres, so that what differs by rounding is equal
+// Two faces, by their places in a list, that lie opposite each other in part.
+struct Opposite {
+  std::int64_t depth = 0;  // nanometers, so that depths that differ by rounding are equal
   std::size_t first = 0, second = 0;
+  double area = 0;   // m^2 in common
+  double slope = 0;  // nanometers by which the depth may differ from place to place
 
-  auto order() const { return std::tuple(thickness, first, second); }
+  auto order() const { return std::tuple(depth, first, second); }
 };
 
-// All pairs that could be one, the thinnest first.
-std::vector<SolidPane> possible_panes(const Scene& scene, const std::vector<Face>& faces) {
+// All such pairs, the nearest first.
+std::vector<Opposite> opposite_faces(const Scene& scene, const std::vector<Face>& faces) {
   std::vector<FlatFace> flat;
-  for (const Face& face : faces) flat.push_back(flat_face(face.corners));
+  for (const Face& face : faces) flat.push_back(flat_face(corner_points(scene, face.polygon)));
   const FaceTree tree(std::move(flat));
   constexpr double any_area = std::numeric_limits<double>::infinity();
-  std::vector<SolidPane> panes;
+  std::vector<Opposite> pairs;
   for (std::size_t a = 0; a < faces.size(); ++a) {
+    const Face& face = faces[a];
     const Vector margin = Vector::Constant(thickest_pane);
     const Box& box = tree.face(a).box;
-    const Vector& normal = faces[a].normal;
     const FaceQuery query{Box(box.min() - margin, box.max() + margin),
                           any_area,
-                          normal,
+                          face.normal,
                           std::sqrt(2 * parallel_within),
-                          normal.dot(faces[a].corners[0]),
+                          face.normal.dot(face.middle),
                           2 * thickest_pane};
     tree.for_each(query, [&](std::size_t b) {
-      if (b <= a || scene.polygons[faces[a].polygon].material != scene.polygons[faces[b].polygon].material) return;
-      const double thickness = thickness_between(faces[a], faces[b]);
-      if (thickness > 0) panes.push_back({std::llround(1e9 * thickness), a, b});
+      const Face& other = faces[b];
+      if (b <= a || scene.polygons[face.polygon].material != scene.polygons[other.polygon].material) return;
+      const double depth = depth_between(face, other);
+      if (!(depth > 0 && depth <= thickest_pane)) return;
+      const double area = common_area(face.triangles, other.triangles, face.normal);
+      if (!(area > least_common * std::min(face.area, other.area))) return;
+      const double slope = face.normal.cross(other.normal).norm() * std::sqrt(std::max(face.area, other.area));
+      pairs.push_back({std::llround(1e9 * depth), a, b, area, 1e9 * slope});
     });
   }
-  std::sort(panes.begin(), panes.end(),
-            [](const SolidPane& one, const SolidPane& other) { return one.order() < other.order(); });
-  return panes;
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Opposite& one, const Opposite& other) { return one.order() < other.order(); });
+  return pairs;
 }
+
+// The two sides of a pane: faces by their places in a list, however each side is cut into faces.
+struct SolidPane {
+  std::vector<std::size_t> first, second;
+  double depth = 0;  // the largest, meters
+};
+
+// Each face with the nearest of those opposite it, which lie in one plane.
+class NearestOpposite {
+ public:
+  NearestOpposite(const std::vector<Face>& faces, const std::vector<Opposite>& pairs)
+      : faces_(faces), nearest_(faces.size(), 0), partners_(faces.size()) {
+    for (const Opposite& pair : pairs) {
+      if (!admits(pair.first, pair) || !admits(pair.second, pair)) continue;
+      for (const std::size_t k : {pair.first, pair.second}) {
+        if (nearest_[k] == 0) nearest_[k] = pair.depth;
+        partners_[k].push_back({k == pair.first ? pair.second : pair.first, pair.area});
+      }
+    }
+  }
+
+  // All faces that hang together with this one; nothing when one of them lies opposite the others in part only.
+  std::optional<SolidPane> pane_of(std::size_t face, std::vector<std::uint8_t>& is_visited) const {
+    SolidPane pane{.first = {face}, .second = {}};
+    is_visited[face] = 1;
+    bool is_whole = true;
+    double area = 0;
+    std::vector<std::pair<std::size_t, bool>> open{{face, true}};
+    while (!open.empty()) {
+      const auto [k, is_first] = open.back();
+      open.pop_back();
+      double opposite = 0;
+      for (const auto& [other, common] : partners_[k]) {
+        opposite += common;
+        if (is_visited[other] != 0) continue;
+        is_visited[other] = 1;
+        (is_first ? pane.second : pane.first).push_back(other);
+        open.emplace_back(other, !is_first);
+      }
+      is_whole = is_whole && opposite >= least_opposite * faces_[k].area;
+      pane.depth = std::max(pane.depth, 1e-9 * static_cast<double>(nearest_[k]));
+      if (is_first) area += faces_[k].area;
+    }
+    if (!is_whole || pane.depth > most_of_size * std::sqrt(area)) return {};
+    return pane;
+  }
+
+ private:
+  // Behind a face the nearest plane counts, whose depth may differ by a tenth and by its slope.
+  bool admits(std::size_t face, const Opposite& pair) const {
+    const auto nearest = static_cast<double>(nearest_[face]);
+    return nearest == 0 || static_cast<double>(pair.depth) <= 1.1 * nearest + pair.slope;
+  }
+
+  const std::vector<Face>& faces_;
+  std::vector<std::int64_t> nearest_;  // nanometers; 0: nothing lies opposite
+  std::vector<std::vector<std::pair<std::size_t, double>>> partners_;
+};
 
 bool has_material(const Scene& scene, const std::string& name) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -121,27 +182,28 @@ Material clear_in_full(const Scene& scene, const Material& glass) {
 Scene with_solid_panes_as_one(Scene scene) {
   const std::vector<Face> faces = single_faces(scene);
   if (faces.size() < 2) return scene;
-  std::vector<std::uint8_t> is_paired(faces.size(), 0);
+  const NearestOpposite opposite(faces, opposite_faces(scene, faces));
+  std::vector<std::uint8_t> is_visited(faces.size(), 0);
   std::map<MaterialIndex, MaterialIndex> clear;
   std::size_t panes = 0;
-  std::int64_t thickest = 0;
-  for (const SolidPane& pane : possible_panes(scene, faces)) {
-    if (is_paired[pane.first] != 0 || is_paired[pane.second] != 0) continue;
-    is_paired[pane.first] = is_paired[pane.second] = 1;
-    Polygon& first = scene.polygons[faces[pane.first].polygon];
-    const auto [place, is_new] = clear.insert({first.material, static_cast<MaterialIndex>(scene.materials.size())});
-    if (is_new) scene.materials.push_back(clear_in_full(scene, scene.materials[first.material]));
-    // The first is seen from both sides now.
-    first.back_material = first.material;
-    scene.polygons[faces[pane.second].polygon].material = place->second;
+  double thickest = 0;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (is_visited[k] != 0) continue;
+    const std::optional<SolidPane> pane = opposite.pane_of(k, is_visited);
+    if (!pane) continue;
+    const MaterialIndex material = scene.polygons[faces[k].polygon].material;
+    const auto [place, is_new] = clear.insert({material, static_cast<MaterialIndex>(scene.materials.size())});
+    if (is_new) scene.materials.push_back(clear_in_full(scene, scene.materials[material]));
+    // The first side is seen from both sides now.
+    for (const std::size_t face : pane->first) scene.polygons[faces[face].polygon].back_material = material;
+    for (const std::size_t face : pane->second) scene.polygons[faces[face].polygon].material = place->second;
     ++panes;
-    thickest = std::max(thickest, pane.thickness);
+    thickest = std::max(thickest, pane->depth);
   }
   if (panes > 0)
-    scene.diagnostics.push_back(
-        {DiagnosticCode::read_as_pane, counted(panes, "pane") + " of two parallel faces, up to " +
-                                           rounded(1e-6 * static_cast<double>(thickest)) + " mm apart, " +
-                                           (panes == 1 ? "counts" : "count each") + " as one thin pane"});
+    scene.diagnostics.push_back({DiagnosticCode::read_as_pane,
+                                 counted(panes, "pane") + " of two parallel faces, up to " + rounded(1e3 * thickest) +
+                                     " mm apart, " + (panes == 1 ? "counts" : "count each") + " as one thin pane"});
   return scene;
 }
 

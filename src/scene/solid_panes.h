@@ -4,12 +4,12 @@
 
 namespace patchlight {
 
-/// The scene with panes that are modelled as solids counting once: of two clear faces that face away from each other,
-/// as the two faces of a sheet of glass do, the later one becomes clear in full, and the first has its material on both
-/// sides. They have to be parallel and opposite each other corner by corner, at most 5 cm and a tenth of their own size
-/// apart, and of one material that does not emit; of several that could be pairs the nearest are. A face with a
-/// material on its back is a sheet already. A note says how many there are. What is cut otherwise on its two faces
-/// counts face by face. O(n log n + k) for n clear faces of which k pairs are near each other.
+/// The scene with each pane that is modeled as a solid counted once. A pane has two sides that face away from each
+/// other, at most 5 cm and a tenth of their size apart. They are parallel, of one material that does not emit, and lie
+/// opposite each other over 96 % of each face, however the sides are cut into faces. The side with the first face gets
+/// its material on both sides, and the other one lets all light through. A face goes with the nearest faces opposite
+/// it. A face with a material on its back is a sheet already. A note gives the number of panes. Sides that lie opposite
+/// each other in part count face by face. O(n log n + k) for n clear faces of which k pairs are near each other.
 Scene with_solid_panes_as_one(Scene scene);
 
 }  // namespace patchlight

@@ -249,10 +249,50 @@ std::vector<IndexTriangle> EarClipping::triangles() {
   return triangles;
 }
 
+// True when nothing but an edge of a triangle lies before a line, up to the rounding of clip_to_half_space().
+bool lies_beyond(const Triangle& triangle, const Point& on_line, const Vector& inward) {
+  constexpr double rounding = 1e-9;
+  const double length = inward.norm();
+  int on_it = 0;
+  for (const Point& corner : triangle) {
+    const Vector offset = corner - on_line;
+    const double height = inward.dot(offset);
+    const double nothing = rounding * length * offset.norm();
+    if (height > nothing) return false;
+    on_it += height >= -nothing;
+  }
+  return on_it < 3;
+}
+
+double common_area_of(const Triangle& a, const Triangle& b, const Vector& normal) {
+  // Inward normals of b's edges, whichever way b turns.
+  const double turn = area_vector(b).dot(normal) > 0 ? 1 : -1;
+  std::array<Vector, 3> inward;
+  for (std::size_t k = 0; k < 3; ++k) {
+    inward[k] = turn * normal.cross(b[(k + 1) % 3] - b[k]);
+    if (lies_beyond(a, b[k], inward[k])) return 0;
+  }
+  std::vector<Point> left(a.begin(), a.end());
+  for (std::size_t k = 0; k < 3 && left.size() > 2; ++k) left = clip_to_half_space(left, b[k], inward[k]);
+  return left.size() > 2 ? area_vector(left).norm() : 0;
+}
+
 }  // namespace
 
-std::vector<std::array<Point, 3>> triangles_of(std::span<const Point> polygon) {
-  std::vector<std::array<Point, 3>> triangles;
+double common_area(std::span<const Triangle> some, std::span<const Triangle> others, const Vector& normal,
+                   double enough) {
+  double area = 0;
+  for (const Triangle& first : some) {
+    for (const Triangle& second : others) {
+      area += common_area_of(first, second, normal);
+      if (area > enough) return area;
+    }
+  }
+  return area;
+}
+
+std::vector<Triangle> triangles_of(std::span<const Point> polygon) {
+  std::vector<Triangle> triangles;
   for (const auto& [a, b, c] : triangulate(polygon)) triangles.push_back({polygon[a], polygon[b], polygon[c]});
   return triangles;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,15 @@ namespace patchlight {
 /// most outlines, O(n^2) in the worst case.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Point> polygon);
 
+using Triangle = std::array<Point, 3>;
+
 /// The same as points.
-std::vector<std::array<Point, 3>> triangles_of(std::span<const Point> polygon);
+std::vector<Triangle> triangles_of(std::span<const Point> polygon);
+
+/// The area in m^2 that triangles have in common as seen along a unit normal, which is that of their parallel planes;
+/// stops where that is more than `enough`. O(n m) for n and m triangles.
+double common_area(std::span<const Triangle> some, std::span<const Triangle> others, const Vector& normal,
+                   double enough = std::numeric_limits<double>::infinity());
 
 /// True when no corner of the planar polygon turns inward.
 bool is_convex(std::span<const Point> polygon);

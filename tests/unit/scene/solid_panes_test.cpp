@@ -69,6 +69,50 @@ TEST(SolidPanes, AreThinOfOneMaterialAndFaceOutward) {
   expect_as_it_was(cube_room(0.5, 1));
 }
 
+// The two sides of a pane, cut along different diagonals, or one of them into strips: light passes once at each place.
+TEST(SolidPanes, CountOnceHoweverTheirSidesAreCut) {
+  const auto at = [](double x, double y, double z) { return Point(1.2 * x, y, 0.02 * z); };
+  const auto strips = [&](int count) {
+    Scene scene = empty_scene({glass_box(0.01).materials[0]});
+    scene = with_polygon(std::move(scene), {at(0, 0, 1), at(1, 0, 1), at(1, 1, 1)});
+    scene = with_polygon(std::move(scene), {at(0, 0, 1), at(1, 1, 1), at(0, 1, 1)});
+    for (int k = 0; k < count; ++k) {
+      const double x = static_cast<double>(k) / count, end = static_cast<double>(k + 1) / count;
+      scene = with_polygon(std::move(scene), {at(x, 1, 0), at(end, 1, 0), at(x, 0, 0)});
+      scene = with_polygon(std::move(scene), {at(end, 1, 0), at(end, 0, 0), at(x, 0, 0)});
+    }
+    return scene;
+  };
+  for (const int count : {1, 2, 7}) {
+    const Scene found = repair(strips(count));
+    ASSERT_EQ(found.polygons.size(), static_cast<std::size_t>(2 + 2 * count));
+    EXPECT_EQ(count_of(found.diagnostics, DiagnosticCode::read_as_pane), 1);
+    for (PolygonIndex p = 0; p < found.polygons.size(); ++p) {
+      EXPECT_EQ(through(found, p)[0], p < 2 ? 0.8 : 1) << p;
+      EXPECT_EQ(found.polygons[p].back_material.has_value(), p < 2) << p;
+    }
+  }
+  // Narrow double glazing, whose sheets are cut differently: each of them counts once.
+  Scene double_glazing = strips(3);
+  for (const Polygon& polygon : strips(5).polygons) {
+    Polygon moved_polygon = polygon;
+    for (std::uint32_t& corner : moved_polygon.corners) {
+      double_glazing.vertices.push_back(strips(5).vertices[corner] + Vector(0, 0, 0.025));
+      corner = static_cast<std::uint32_t>(double_glazing.vertices.size() - 1);
+    }
+    double_glazing.polygons.push_back(moved_polygon);
+  }
+  const Scene two = repair(std::move(double_glazing));
+  int counted_once = 0;
+  for (const Polygon& polygon : two.polygons) counted_once += polygon.back_material.has_value();
+  EXPECT_EQ(counted_once, 4) << "the two halves of the first side of each sheet";
+  // A second side with a hole of a tenth of its area is none.
+  Scene open = strips(10);
+  open.polygons.resize(open.polygons.size() - 2);
+  const std::size_t materials = open.materials.size();
+  EXPECT_EQ(with_solid_panes_as_one(std::move(open)).materials.size(), materials);
+}
+
 TEST(SolidPanes, OfSeveralAreTakenInPairs) {
   // Three sheets of 6 mm, 10 mm apart: those that face away from each other across 6 mm, not across the gaps.
   Scene scene = empty_scene({glass_box(0.01).materials[0]});
