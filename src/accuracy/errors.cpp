@@ -27,7 +27,7 @@
 namespace patchlight {
 namespace {
 
-// Fewer bands are not worth finding out about.
+// Up to this number of bands are solved as they are.
 constexpr Eigen::Index few_bands = 3;
 
 // x_a . x_b of bands that have norm 1, or 0 where all is 0.
@@ -38,8 +38,7 @@ Eigen::MatrixXd cosines_between(const FieldView& field, const Eigen::VectorXd& a
   return inverse.asDiagonal() * (weighed.transpose() * weighed) * inverse.asDiagonal();
 }
 
-// Bands by pivoted Cholesky decomposition: each time the one that those before tell least of, until they tell all but
-// `tolerance` of every one.
+// Pivoted Cholesky decomposition: picks the band with the largest residual until every residual is below `tolerance`.
 std::vector<Eigen::Index> pivots(const Eigen::MatrixXd& G, double tolerance) {
   Eigen::VectorXd left = G.diagonal();  // squares of what the chosen ones do not tell
   Eigen::MatrixXd L(G.rows(), 0);

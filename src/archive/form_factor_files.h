@@ -11,7 +11,7 @@
 
 namespace patchlight {
 
-/// What makes patches a group.
+/// The property that the patches of a group share.
 enum class GroupBy { material, object };
 
 /// "material" or "object".

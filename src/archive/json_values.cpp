@@ -102,7 +102,7 @@ std::array<AuditedPairs, n> audited_of(const nlohmann::json& pairs, const nlohma
   return kinds;
 }
 
-Json json_of(const SamplingError::Unanimous& unanimous) {
+Json counts_of(const SamplingError::Unanimous& unanimous) {
   return {{"sampled_again", pairs_of(unanimous.audited)},
           {"squares", squares_of(unanimous.audited)},
           {"weights", weights_of(unanimous.audited)},
@@ -134,8 +134,8 @@ nlohmann::ordered_json json_of(const SamplingError& error) {
   return {{"sampled_again", pairs},
           {"squares", squares},
           {"weights", weights},
-          {"rays_all_free", json_of(error.visible)},
-          {"rays_all_blocked", json_of(error.occluded)}};
+          {"rays_all_free", counts_of(error.visible)},
+          {"rays_all_blocked", counts_of(error.occluded)}};
 }
 
 SamplingError sampling_error_of(const nlohmann::json& json) {

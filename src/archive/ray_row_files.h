@@ -13,7 +13,7 @@
 
 namespace patchlight {
 
-/// What rows of rays depend on besides the patches and how rays are sent.
+/// The inputs of rows of rays besides the patches and the options of rays.
 struct RowScene {
   const Scene& scene;
   EffectOptions effects;  ///< asked for: whether anything is in the way of rays

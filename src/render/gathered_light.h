@@ -17,7 +17,7 @@
 
 namespace patchlight {
 
-/// What rays over a hemisphere say.
+/// The estimate by rays over a hemisphere.
 struct HemisphereIrradiance {
   Spectrum irradiance;  ///< W/m^2
   Spectrum variance;    ///< of it

@@ -18,7 +18,7 @@
 namespace patchlight {
 namespace {
 
-// What the settings of a study have in common.
+// The inputs that all settings of a study share.
 struct Experiment {
   const Scene& scene;
   Request request;  // of the finest setting

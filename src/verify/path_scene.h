@@ -21,7 +21,7 @@ namespace patchlight {
 
 struct PathReceiver;
 
-/// What one side of a polygon is to light.
+/// The optical properties of one side of a polygon.
 struct Surface {
   bool kept = false;         ///< false: it absorbs all light and emits none
   bool is_clear = false;     ///< a side of a clear polygon

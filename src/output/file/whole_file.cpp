@@ -24,7 +24,7 @@
 namespace patchlight {
 namespace {
 
-// What the names of all temporary files and folders begin with.
+// The prefix of the names of all temporary files and folders.
 constexpr std::string_view temporary_prefix = ".patchlight-";
 
 // So many names are tried before it is an error that they are all taken.

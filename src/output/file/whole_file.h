@@ -50,7 +50,7 @@ class WholeFiles {
 /// True for a folder that may be replaced: one with an earlier result.
 using MayReplace = std::function<bool(const std::filesystem::path& folder)>;
 
-/// What is written into a folder of its own.
+/// A result that has a folder of its own.
 struct FolderResult {
   std::string facts_file;          ///< JSON
   std::string kind;                ///< what stands in it as "kind"

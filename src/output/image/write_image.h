@@ -46,8 +46,9 @@ void write_difference(const std::filesystem::path& file, const Picture& first, c
 /// Writes the standard errors of the pixels of a final picture in false colours (.png). \throws OutputError.
 void write_picture_errors(const std::filesystem::path& file, const Picture& picture);
 
-/// Writes what observers read (.csv), a line for each: name, vertical and cylindrical illuminance in lx, background
-/// luminance in cd/m^2, solid angle of what glares in sr, and UGR, empty where nothing does. \throws OutputError.
+/// Writes the readings of observers (.csv), a line for each: name, vertical and cylindrical illuminance in lx,
+/// background luminance in cd/m^2, solid angle of what glares in sr, and UGR, empty where nothing does. \throws
+/// OutputError.
 void write_observers(const std::filesystem::path& file, std::span<const ObserverReading> observers);
 
 }  // namespace patchlight

@@ -43,7 +43,7 @@ Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {
 
 namespace {
 
-// What was refined on the way to an accuracy: an entry for each mesh. Empty without error bars.
+// Lists the refinements on the way to an accuracy: an entry for each mesh. Empty without error bars.
 Json accuracy_steps(const std::vector<AccuracyStep>& steps) {
   Json parts = Json::array();
   for (const AccuracyStep& step : steps) {

@@ -10,7 +10,7 @@
 
 namespace patchlight {
 
-/// What write_comparison() writes as compare.json. Names from a model may hold bytes that are not UTF-8.
+/// The content of compare.json. Names from a model may hold bytes that are not UTF-8.
 nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& comparison, const Provenance& provenance);
 
 /// Writes a folder, whole or not at all: the table (compare.csv), every iteration of every solver (history.csv), both

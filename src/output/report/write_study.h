@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-/// What write_study() writes as study.json. Names from a model may hold bytes that are not UTF-8.
+/// The content of study.json. Names from a model may hold bytes that are not UTF-8.
 nlohmann::ordered_json study_json(const Scene& scene, const Study& study, const Provenance& provenance);
 
 /// Writes a folder, whole or not at all: a row per setting (study.csv), the same with the reference, the prices and the

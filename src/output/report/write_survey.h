@@ -11,7 +11,7 @@
 
 namespace patchlight {
 
-/// What a run would simulate and is expected to cost, as JSON. docs/reference/outputs/report-json.md lists the keys.
+/// The plan of a run and its expected cost, as JSON. docs/reference/outputs/report-json.md lists the keys.
 std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& cost);
 
 /// The same as a file. \throws OutputError.

@@ -1,4 +1,4 @@
-#include "accuracy/quarters_gather.h"
+#include "accuracy/unseen_differences.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 
