@@ -29,7 +29,7 @@ constexpr std::uint32_t usual_walks = 16;
 constexpr std::uint32_t few_walks = 4;
 constexpr PatchIndex many_patches = 50000;
 
-constexpr std::uint32_t purpose = 0x656e636c;
+constexpr std::uint32_t enclosure_stream = 0x656e636c;
 
 std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t walks, std::uint32_t key) {
   const auto samples = scrambled_sobol(walks, key);
@@ -58,7 +58,7 @@ bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& f
                  std::uint32_t walks) {
   std::vector<FacingPlace> places(walks, from);
   for (std::uint32_t k = 0; k < reflections; ++k) {
-    const auto hits = faces.first_hits(onward(places, walks, hash({purpose, key, k})));
+    const auto hits = faces.first_hits(onward(places, walks, hash({enclosure_stream, key, k})));
     if (k == 0 && is_gap(hits, face_area)) return false;
     std::vector<FacingPlace> next;
     for (const std::optional<Hit>& hit : hits) {

@@ -8,7 +8,7 @@
 #include "cli/picture.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_survey.h"
-#include "output/vtk/vtk_polygons.h"
+#include "output/vtk/write_problems.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
 #include "scene/sensor_grid.h"

@@ -160,7 +160,15 @@ std::string how_it_ended(int status) {
   return std::string("the reader of this format crashed (") + strsignal(WTERMSIG(status)) + ")";
 }
 
+// A signal that stops this program reaches its children as well: the file is not to blame.
+bool was_stopped(int status) {
+  if (!WIFSIGNALED(status)) return false;
+  const int signal = WTERMSIG(status);
+  return signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+}
+
 void require_good_end(const std::string& message, int status, const std::string& file) {
+  if (was_stopped(status)) throw Cancelled();
   const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !message.empty();
   if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it again");
 }

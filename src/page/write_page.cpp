@@ -12,10 +12,11 @@
 #include "output/report/write_comparison.h"
 #include "output/report/write_study.h"
 #include "page/drawn_faces.h"
+#include "page/page_parts.h"
+#include "pipeline/world.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 #include "solve/scattering.h"
-#include "pipeline/world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,24 +27,9 @@
 #include <string_view>
 #include <vector>
 
-// The linker makes an object of two files, with these names in it.
-extern "C" {
-extern const char _binary_page_template_html_start[];
-extern const char _binary_page_template_html_end[];
-extern const char _binary_page_three_js_start[];
-extern const char _binary_page_three_js_end[];
-}
-
 namespace patchlight {
 
 namespace {
-
-// The page without its title and its data, which take the places of @TITLE@ and @DATA@. It is put together by
-// cmake/page.cmake when the library is built.
-std::string_view page_template() { return {_binary_page_template_html_start, _binary_page_template_html_end}; }
-
-// three.js and its controls.
-std::string_view page_scripts() { return {_binary_page_three_js_start, _binary_page_three_js_end}; }
 
 using Json = nlohmann::ordered_json;
 

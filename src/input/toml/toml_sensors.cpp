@@ -239,7 +239,7 @@ void require_known_rooms(const Scene& scene, const FloorGrid& grid) {
         names.begin(), names.end(), [&](const std::string& name) { return name == pattern || matches(name, pattern); });
     if (!is_known)
       throw InputError(where_of(grid), "sensors.room: no room is called '" + pattern + "'" +
-                                           suggestion(pattern, names) + " The rooms are " + listed(names));
+                                           suggestion(pattern, names) + "\nhint: the rooms are " + listed(names));
   }
 }
 

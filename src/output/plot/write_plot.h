@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cairo.h>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+using cairo_t = struct _cairo;  // of cairo.h
 
 namespace patchlight {
 

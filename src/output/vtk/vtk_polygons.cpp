@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "output/file/whole_file.h"
+#include "output/vtk/write_problems.h"
 
 #include <algorithm>
 #include <map>

@@ -4,6 +4,7 @@
 #include "support/scenes.h"
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -85,6 +86,16 @@ TEST(ReadIsolated, WhateverElseHappensIsARefusalOfTheFile) {
 }
 
 // assimp reads on without an end at some damaged numbers, and would take all memory of the machine.
+TEST(ReadIsolated, ASignalThatStopsTheProgramIsNoFaultOfTheFile) {
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP})
+    EXPECT_THROW(read_isolated("a.gltf",
+                               [&]() -> Scene {
+                                 raise(signal);
+                                 return {};
+                               }),
+                 Cancelled);
+}
+
 TEST(ReadIsolated, MemoryIsLimited) {
   const auto take_three_gigabytes = [] {
     std::vector<std::unique_ptr<char[]>> taken;

@@ -1,5 +1,5 @@
 #include "output/report/write_survey.h"
-#include "output/vtk/vtk_polygons.h"
+#include "output/vtk/write_problems.h"
 #include "scene/repair.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"
