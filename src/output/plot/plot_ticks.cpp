@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cairo.h>
 #include <cassert>
 #include <charconv>
 #include <cmath>

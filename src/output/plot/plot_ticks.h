@@ -2,7 +2,6 @@
 
 #include "output/plot/write_plot.h"
 
-#include <cairo.h>
 #include <string>
 #include <vector>
 
