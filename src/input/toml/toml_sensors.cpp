@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <set>
 
 namespace patchlight {
@@ -256,6 +257,17 @@ GridInAir grid_over_room(const NamedRoom& room, const FloorGrid& grid, const std
   return over;
 }
 
+double height_of(const NamedRoom& room, const Vector& up) {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (const std::vector<Point>& face : room.faces) {
+    for (const Point& corner : face) {
+      lowest = std::min(lowest, up.dot(corner));
+      highest = std::max(highest, up.dot(corner));
+    }
+  }
+  return highest - lowest;
+}
+
 // The rooms that are meant, each with a grid of its own.
 FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
   require_known_rooms(scene, grid);
@@ -272,6 +284,9 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
       continue;
     }
     note_share(notes, grid, room.name, over.share);
+    if (const double height = height_of(room, scene.up); grid.height >= height)
+      notes.add("sensors '" + grid.name + "' lie " + rounded(grid.height) + " m above the floor, over the ceiling of",
+                room.name + " (" + rounded(height) + " m high)", DiagnosticCode::doubtful_sensor);
     over.group.name = grid.rooms == std::vector{room.name} ? grid.name : grid.name + " " + room.name;
     groups.push_back(std::move(over.group));
   }

@@ -2,6 +2,7 @@
 
 #include "input/toml/new_scene_file.h"
 #include "model_files.h"
+#include "support/diagnostics_of.h"
 #include "support/scenes.h"
 
 #include <numbers>
@@ -90,6 +91,15 @@ TEST_F(Rooms, HaveAGridEach) {
     EXPECT_GT(back.x(), 5.5);
     EXPECT_LT(back.x(), 8.5);
     EXPECT_NEAR(back.z(), 0.8, 1e-6);
+  }
+}
+
+// The rooms are 2.5 m high.
+TEST_F(Rooms, HaveAWarningOfAGridOverTheirCeiling) {
+  for (const auto& [height, warnings] : {std::pair{"0.8", 0}, {"2.4", 0}, {"80", 1}}) {
+    const Scene scene = read_scene(write("house.toml", std::string("[[model]]\nfile = \"house.ifc\"\n[[sensors]]\n") +
+                                                           "room = \"*\"\nspacing = 0.5\nheight = " + height + "\n"));
+    EXPECT_EQ(test::count_of(scene.diagnostics, DiagnosticCode::doubtful_sensor), warnings) << height;
   }
 }
 
