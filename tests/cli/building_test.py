@@ -101,7 +101,7 @@ class BuildingTest(ToolTest):
         run = ("solve", "box.obj", "--sky", "overcast:1000lx", "--patches", 100, "-q", "--json", "a.json")
         guessed = self.run_tool(*run)
         self.assertEqual(guessed.returncode, 0, guessed.stderr)
-        self.assertIn("warning: box.obj: no file states the vertical axis, and the sky depends on it", guessed.stderr)
+        self.assertIn("warning: guessed_up: box.obj: ", guessed.stderr)
         self.assertIn("--up z", guessed.stderr)
         self.assertNotIn("--up", self.run_tool(*run, "--up", "z").stderr)
         self.assertIn("guessed_up", self.run_tool("check", "box.obj", "--sky", "overcast").stdout)
