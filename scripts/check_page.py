@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Opens pages of patchlight in a headless Chromium, clicks patches and compares what the page tells with the .vtp.
+"""Opens pages of patchlight in a headless Chromium, clicks patches and compares the values that it shows with the .vtp.
 
 usage: scripts/check_page.py TOOL FOLDER    writes pages, results and screenshots into FOLDER
 A page must open without a message on its console; of five patches clicked the values are those of the .vtp of the same
-run, and the place clicked lies on the patch. Names that are HTML stay text, panes let see what is behind them, the
+run, and the place clicked lies on the patch. Names that are HTML stay text, the scene behind panes is visible, the
 legend's range by day is of the inside, and no note stands there twice. A closed room in which all that can be seen has
 one radiance shows no dark pixel and no gap, from inside, from outside and in sections, however its faces overlap.
-Without Chromium it says so and ends well,
-unless CI is set.
+Without Chromium the script prints a line and returns 0, unless CI is set.
 """
 import json
 import math
@@ -26,7 +25,7 @@ BROWSER = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enabl
            "--hide-scrollbars", "--disable-extensions", "--enable-logging=stderr", "--virtual-time-budget=30000"]
 LUMINOUS = (179 * 0.2126, 179 * 0.7152, 179 * 0.0722)  # lm/W times the weights of Rec. 709
 
-# Clicks places of the canvas until five patches are found, and leaves what the page tells in place of all else.
+# Clicks places of the canvas until five patches are found, and replaces the page by the values that it shows.
 CLICKS = """<script>
 const data = JSON.parse(document.getElementById("data").textContent);
 setTimeout(() => {
@@ -115,7 +114,7 @@ look();
 
 
 def browse(browser, page, *options):
-    """What the browser prints, and the messages of the page's console."""
+    """The output of the browser, with the messages of the page's console."""
     with tempfile.TemporaryDirectory(prefix="patchlight-browser-") as profile:
         done = subprocess.run([browser, *BROWSER, f"--user-data-dir={profile}", *options, page.as_uri()],
                               capture_output=True, text=True, timeout=300, check=False)
@@ -145,7 +144,7 @@ def distance_to_plane(place, corners):
 
 
 def faults_of_patch(told, points, corners, cells):
-    """What the page tells of a patch that the .vtp does not say."""
+    """The values of a patch on the page that differ from the .vtp."""
     patch = int(told["patch"])
     outline = [points[k] for k in corners[patch]]
     place = [float(word) for word in told["place"].split()]
@@ -173,7 +172,7 @@ def faults_of_patch(told, points, corners, cells):
 
 
 def faults_of_glass(facts, cells):
-    """A room by day with one pane: what is seen of it, and what the range of luminances goes by."""
+    """A room by day with one pane: the visible faces and the range of luminances."""
     if not facts["panes"] or min(facts["panes"]) < 64:
         yield f"the pane is not seen through: its pixels are {facts['panes']} of 255"
     if facts["looks"] != ["natural, exposed for the inside", "natural, exposed for the outside"]:
@@ -185,7 +184,7 @@ def faults_of_glass(facts, cells):
 
 
 def check(browser, folder, name):
-    """The faults of one page; prints what it saw."""
+    """The faults of one page; prints its values."""
     page = folder / f"{name}.html"
     facts, messages = facts_of(browser, page)
     faults = [f"on the console: {message}" for message in messages]
@@ -291,7 +290,7 @@ field_of_view = 80
 
 
 def faults_of_seams(browser, page):
-    """A furnace has one colour: no pixel of it is dark, and from inside none shows the background."""
+    """A furnace has one color: no pixel of it is dark, and from inside none shows the background."""
     counts, messages = facts_of(browser, page, PIXELS, WHITE)
     yield from (f"on the console: {message}" for message in messages)
     if counts is None:

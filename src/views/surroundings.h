@@ -1,7 +1,7 @@
 #pragma once
 
-#include "patchlight/simulate.h"
 #include "patchlight/scene/scene.h"
+#include "patchlight/simulate.h"
 
 #include <functional>
 

@@ -1,5 +1,6 @@
-#include "output/report/write_survey.h"
 #include "output/vtk/write_problems.h"
+
+#include "output/report/write_survey.h"
 #include "scene/repair.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"
