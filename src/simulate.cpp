@@ -69,7 +69,7 @@ Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, c
   const ThreadLimit threads(request.resources.threads);
   StageClock clock;
 
-  // 1. Refuse what cannot be.
+  // 1. Refuse requests that cannot be combined.
   const Given given = given_by(with);
   check(request, scene, given);
 

@@ -3,6 +3,7 @@
 #include "plan/planned_scene.h"
 #include "scene/coverings.h"
 
+#include <cassert>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -40,12 +41,13 @@ World::World(std::shared_ptr<const Scene> scene, const Plan& plan)
 World::~World() = default;
 
 std::shared_ptr<const World> World::in_bands(const std::vector<Eigen::Index>& bands, const Plan& plan) const {
-  return std::make_shared<const World>(std::make_shared<const Scene>(patchlight::in_bands(*planned_, bands)), plan);
+  return std::make_shared<const World>(std::make_shared<const Scene>(patchlight::in_bands(*scene_, bands)), plan);
 }
 
 const Lighting& World::lighting() const { return later_->planned.of(*planned_, tracing_); }
 
 const Lighting& World::lighting_in_one_band() const {
+  assert(lamp_color_.size() > 0);
   Eigen::Index brightest = 0;
   lamp_color_.maxCoeff(&brightest);
   return later_->in_one_band.of(in_one_band(*planned_, brightest), tracing_);

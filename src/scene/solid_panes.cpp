@@ -20,14 +20,15 @@ namespace patchlight {
 namespace {
 
 constexpr double thickest_pane = 0.05;    // meters
+constexpr double thinnest_pane = 1e-5;    // meters; nearer faces are in one plane
 constexpr double most_of_size = 0.1;      // of the root of the area
-constexpr double parallel_within = 1e-4;  // cosine of the angle between normals, less than 1
+constexpr double parallel_within = 1e-4;  // 1 less the cosine of the angle between planes: 0.8 degrees
 
 // The share of a face that has to lie opposite faces of the other side: corners may be off by a hundredth of its size.
 constexpr double least_opposite = 0.96;
 
-// Pairs of faces with smaller shares in common touch at an edge.
-constexpr double least_common = 1e-3;
+// Pairs of faces with smaller shares in common are neighbors that overlap at an edge.
+constexpr double least_common = 1 - least_opposite;
 
 // A clear face of which there may be a second one.
 struct Face {
@@ -38,13 +39,14 @@ struct Face {
   double area = 0;  // m^2
 };
 
-// Those with one front: a face with a material on its back is two faces in one place, a sheet already.
+// Faces with a material on their back are left out: they are two faces at one place, a sheet already.
 std::vector<Face> single_faces(const Scene& scene) {
   std::vector<Face> faces;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Polygon& polygon = scene.polygons[p];
     if (!is_opening(scene, p) || polygon.back_material) continue;
-    if ((scene.materials[polygon.material].exitance > 0).any()) continue;
+    const Material& material = scene.materials[polygon.material];
+    if (material.second_face || (material.exitance > 0).any()) continue;
     const std::vector<Point> corners = corner_points(scene, p);
     faces.push_back(
         {p, triangles_of(corners), front_normal(scene, p), area_centroid(corners), area_vector(corners).norm()});
@@ -78,7 +80,7 @@ std::vector<Opposite> opposite_faces(const Scene& scene, const std::vector<Face>
   std::vector<Opposite> pairs;
   for (std::size_t a = 0; a < faces.size(); ++a) {
     const Face& face = faces[a];
-    const Vector margin = Vector::Constant(thickest_pane);
+    const Vector margin = thickest_pane * face.normal.cwiseAbs();
     const Box& box = tree.face(a).box;
     const FaceQuery query{Box(box.min() - margin, box.max() + margin),
                           any_area,
@@ -90,10 +92,10 @@ std::vector<Opposite> opposite_faces(const Scene& scene, const std::vector<Face>
       const Face& other = faces[b];
       if (b <= a || scene.polygons[face.polygon].material != scene.polygons[other.polygon].material) return;
       const double depth = depth_between(face, other);
-      if (!(depth > 0 && depth <= thickest_pane)) return;
+      if (!(depth >= thinnest_pane && depth <= thickest_pane)) return;
       const double area = common_area(face.triangles, other.triangles, face.normal);
       if (!(area > least_common * std::min(face.area, other.area))) return;
-      const double slope = face.normal.cross(other.normal).norm() * std::sqrt(std::max(face.area, other.area));
+      const double slope = face.normal.cross(other.normal).norm() * tree.face(a).box.diagonal().norm();
       pairs.push_back({std::llround(1e9 * depth), a, b, area, 1e9 * slope});
     });
   }
@@ -108,17 +110,22 @@ struct SolidPane {
   double depth = 0;  // the largest, meters
 };
 
-// Each face with the nearest of those opposite it, which lie in one plane.
+// Each face with the faces of the nearest plane behind it that covers it. Smaller parts that are nearer, as a handle or
+// a groove, do not count.
 class NearestOpposite {
  public:
   NearestOpposite(const std::vector<Face>& faces, const std::vector<Opposite>& pairs)
-      : faces_(faces), nearest_(faces.size(), 0), partners_(faces.size()) {
+      : faces_(faces), partners_(faces.size()) {
+    std::vector<std::vector<const Opposite*>> behind(faces.size());
     for (const Opposite& pair : pairs) {
-      if (!admits(pair.first, pair) || !admits(pair.second, pair)) continue;
-      for (const std::size_t k : {pair.first, pair.second}) {
-        if (nearest_[k] == 0) nearest_[k] = pair.depth;
-        partners_[k].push_back({k == pair.first ? pair.second : pair.first, pair.area});
-      }
+      behind[pair.first].push_back(&pair);
+      behind[pair.second].push_back(&pair);
+    }
+    for (std::size_t k = 0; k < faces.size(); ++k) nearest_.push_back(nearest_cover(behind[k], faces[k].area));
+    for (const Opposite& pair : pairs) {
+      if (!admits(nearest_[pair.first], pair) || !admits(nearest_[pair.second], pair)) continue;
+      partners_[pair.first].emplace_back(pair.second, pair.area);
+      partners_[pair.second].emplace_back(pair.first, pair.area);
     }
   }
 
@@ -141,7 +148,7 @@ class NearestOpposite {
         open.emplace_back(other, !is_first);
       }
       is_whole = is_whole && opposite >= least_opposite * faces_[k].area;
-      pane.depth = std::max(pane.depth, 1e-9 * static_cast<double>(nearest_[k]));
+      pane.depth = std::max(pane.depth, 1e-9 * static_cast<double>(nearest_[k].value_or(0)));
       if (is_first) area += faces_[k].area;
     }
     if (!is_whole || pane.depth > most_of_size * std::sqrt(area)) return {};
@@ -149,14 +156,26 @@ class NearestOpposite {
   }
 
  private:
-  // Behind a face the nearest plane counts, whose depth may differ by a tenth and by its slope.
-  bool admits(std::size_t face, const Opposite& pair) const {
-    const auto nearest = static_cast<double>(nearest_[face]);
-    return nearest == 0 || static_cast<double>(pair.depth) <= 1.1 * nearest + pair.slope;
+  // Depths in one plane differ by a tenth at most, and by their slope.
+  static bool admits(const std::optional<std::int64_t>& nearest, const Opposite& pair) {
+    if (!nearest || pair.depth < *nearest) return false;
+    return static_cast<double>(pair.depth) <= 1.1 * static_cast<double>(*nearest) + pair.slope;
+  }
+
+  // The least depth from which on the pairs, which ascend, cover the face; nothing if they never do.
+  static std::optional<std::int64_t> nearest_cover(const std::vector<const Opposite*>& behind, double area) {
+    double covered = 0;
+    std::size_t end = 0;
+    for (std::size_t begin = 0; begin < behind.size(); ++begin) {
+      for (; end < behind.size() && admits(behind[begin]->depth, *behind[end]); ++end) covered += behind[end]->area;
+      if (covered >= least_opposite * area) return behind[begin]->depth;
+      covered -= behind[begin]->area;
+    }
+    return std::nullopt;
   }
 
   const std::vector<Face>& faces_;
-  std::vector<std::int64_t> nearest_;  // nanometers; 0: nothing lies opposite
+  std::vector<std::optional<std::int64_t>> nearest_;  // nanometers; nothing: no plane covers the face
   std::vector<std::vector<std::pair<std::size_t, double>>> partners_;
 };
 
@@ -171,6 +190,7 @@ Material clear_in_full(const Scene& scene, const Material& glass) {
   clear.reflectance.setZero();
   clear.transmittance.setOnes();
   clear.stated_pane.reset();
+  clear.spectra = {};
   clear.second_face = true;
   clear.name += " (second face)";
   while (has_material(scene, clear.name)) clear.name += "'";
@@ -202,8 +222,9 @@ Scene with_solid_panes_as_one(Scene scene) {
   }
   if (panes > 0)
     scene.diagnostics.push_back({DiagnosticCode::read_as_pane,
-                                 counted(panes, "pane") + " of two parallel faces, up to " + rounded(1e3 * thickest) +
-                                     " mm apart, " + (panes == 1 ? "counts" : "count each") + " as one thin pane"});
+                                 counted(panes, "pane") + " with two sides, up to " + rounded(1e3 * thickest) +
+                                     " mm apart, " + (panes == 1 ? "counts" : "count each") + " as one thin pane",
+                                 panes});
   return scene;
 }
 

@@ -302,7 +302,7 @@ std::vector<Probe> draw_probes(const Simulation& simulation, const Eigen::Vector
   return probes;
 }
 
-// ||B - B_true||_A / ||B_true - E||_A: the mean of rho^2 (H - H_ref)^2 by probes, without the variance of the
+// ||B - B_true||_A / ||B - E||_A: the mean of rho^2 (H - H_ref)^2 by probes, without the variance of the
 // reference, over the mean of rho^2 H^2 of all patches.
 class TotalErrorMeter {
  public:
@@ -329,7 +329,7 @@ class TotalErrorMeter {
   // variance 2 (s^2 + n^2)^2, where n is the noise of the paths. Probes add the spread of s^2 among patches.
   TotalError measure(const std::vector<Reference>& references) const {
     const auto count = static_cast<double>(probes_.size());
-    double square = 0, variance = 0, z = 0;
+    double square = 0, variance = 0, z = 0, reflecting = 0;
     for (std::size_t k = 0; k < probes_.size(); ++k) {
       const auto [i, weight] = probes_[k];
       const double noise = std::pow(rho_[i] * references[k].standard_error, 2);
@@ -337,9 +337,12 @@ class TotalErrorMeter {
       square += weight * (off - noise) / count;
       variance += std::pow(weight * (variance_[i] + noise), 2) * 2 / count;
       variance += std::pow(weight * variance_[i] - stated_, 2) / count;
-      if (off > 0) z += off / (variance_[i] + noise) / count;  // black patches have neither light nor error
+      if (off == 0) continue;  // black patches have neither light nor error
+      z += off / (variance_[i] + noise);
+      ++reflecting;
     }
-    return {simulation_.accuracy.back().total, square / light_, std::sqrt(variance / count) / light_, std::sqrt(z)};
+    return {simulation_.accuracy.back().total, square / light_, std::sqrt(variance / count) / light_,
+            reflecting > 0 ? std::sqrt(z / reflecting) : 0};
   }
 
  private:
@@ -498,24 +501,27 @@ std::string make_page(const std::string& table, const Options& options) {
          std::to_string(options.daylight) + " --lamps " + std::to_string(options.lamps) + " --seed " +
          std::to_string(options.seed) + " --markdown FILE`" + (more.empty() ? "" : ", options" + more) +
          ".\n\n"
-         "The program makes rooms at random and solves each with the default settings of `patchlight solve`. "
-         "It compares 15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four "
-         "near walls, one that faces a wall and one below the ceiling. Half of the rooms are rotated; a third is in "
+         "The program makes rooms at random and solves each with the default settings of `patchlight solve`. It "
+         "compares\n"
+         "15 sensors per room with the path tracer of `patchlight crosscheck`: nine on a work plane, four near walls, "
+         "one\n"
+         "that faces a wall and one below the ceiling. Half of the rooms are rotated, and a third is in "
          "millimeters.\n\n" +
          table +
          "\nHow to read the table:\n\n"
          "- *z* is the difference between solver and paths, divided by their combined standard error. Normal errors "
-         "put "
-         "95.4 % of the sensors within 2 and 99.7 % within 3.\n"
+         "put\n"
+         "  95.4 % of the sensors within 2 and 99.7 % within 3.\n"
          "- *True error* is the rms relative difference without the noise of the paths. The reference of a sensor is "
-         "at "
-         "least a tenth of the room's mean.\n"
+         "at\n"
+         "  least a tenth of the room's mean.\n"
          "- *Stated / true* is the rms standard error of the sensors divided by the true error.\n"
-         "- *Totals that cover* counts the rooms whose stated total is at least their true relative error. The program "
-         "measures it at " +
+         "- *Totals that cover* counts the rooms whose stated total is at least their true relative error. The "
+         "program\n"
+         "  measures it at " +
          std::to_string(options.probes) +
-         " patches per room, half drawn by area and half by stated error. It allows two standard deviations of "
-         "that measurement.\n"
+         " patches per room, half drawn by area and half by stated error. It allows two\n"
+         "  standard deviations of that measurement.\n"
          "- *Rms z of patches* is the root mean square of (solver - paths) / standard error over these patches.\n"
          "- *CPU s* covers solving and reading the sensors, without reading the model and without path tracing.\n";
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
+#include <memory>
 #include <utility>
 
 namespace patchlight::solid_panes_test {
@@ -111,6 +112,26 @@ TEST(SolidPanes, CountOnceHoweverTheirSidesAreCut) {
   open.polygons.resize(open.polygons.size() - 2);
   const std::size_t materials = open.materials.size();
   EXPECT_EQ(with_solid_panes_as_one(std::move(open)).materials.size(), materials);
+}
+
+// A handle of the same glass on the back, 3 mm deep, and a second pane beside it that lacks its back.
+TEST(SolidPanes, CountOnceBesideSmallerPartsAndOpenPanes) {
+  Scene scene = glass_box(0.01);
+  scene = with_box(std::move(scene), Point(0.5, 0.5, 0.004), Point(0.52, 0.52, 0.0075), false);
+  scene = with_quad(std::move(scene),
+                    {Point(1.198, 0, 0.01), Point(2.4, 0, 0.01), Point(2.4, 1, 0.01), Point(1.198, 1, 0.01)});
+  const Scene found = with_solid_panes_as_one(std::move(scene));
+  EXPECT_EQ(through(found, 0)[0] * through(found, 1)[0], 0.8);
+  EXPECT_EQ(through(found, 12)[0], 0.8) << "the open one";
+}
+
+// The second side has no spectra of its own left, which would replace its transmittance later.
+TEST(SolidPanes, LetSampledLightThroughOnce) {
+  Scene scene = glass_box(0.01);
+  scene.materials[0].spectra.transmittance = std::make_shared<const SampledSpectrum>();
+  const Scene found = with_solid_panes_as_one(std::move(scene));
+  EXPECT_TRUE(found.materials[found.polygons[1].material].second_face);
+  EXPECT_EQ(found.materials[found.polygons[1].material].spectra.transmittance, nullptr);
 }
 
 TEST(SolidPanes, OfSeveralAreTakenInPairs) {
