@@ -156,7 +156,7 @@ constexpr OptionText options[] = {
      "LENGTH, e.g. 2m."},
 
     {"--points", "", sensors, usual, "FILE", "Points where irradiance is wanted, lines x y z nx ny nz [default: none]",
-     "Positions are in model units (in metres for a scene file); nx ny nz is the direction of the receiving side."},
+     "Positions are in model units (in meters for a scene file); nx ny nz is the direction of the receiving side."},
     {"--points-output", "", sensors, usual, "FILE", "Readings (.csv, .vtp) or maps (.svg, .png) (repeatable)",
      "Irradiance with error bars at the points and sensors. Default: NAME.irradiance.csv, beside the result or in the "
      "current folder."},

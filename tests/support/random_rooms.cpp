@@ -297,7 +297,7 @@ void add_overhang(Draft& draft, const WindowRow& row) {
 }
 
 // Houses before the window, next to one another from left to right.
-void add_neighbours(Draft& draft, const WindowRow& row) {
+void add_neighbors(Draft& draft, const WindowRow& row) {
   Dice& dice = draft.dice;
   const int houses = dice.whole(1, 3);
   double x = dice.between(-15, -2);
@@ -350,7 +350,7 @@ void add_daylight_parts(Draft& draft) {
   else
     draft.add(make_lawn(low, high, dice.log_between(15, 80), dice.chance(0.5)));
   if (kind == "overhang") add_overhang(draft, row);
-  if (kind == "neighbours") add_neighbours(draft, row);
+  if (kind == "neighbors") add_neighbors(draft, row);
   if (kind == "louvres") add_slats(draft, row);
   if (kind == "furniture" || dice.chance(0.15)) add_furniture(draft);
 }
@@ -527,7 +527,7 @@ std::string make_name(const std::string& kind, std::size_t number) {
 }  // namespace
 
 std::vector<std::string> daylight_kinds() {
-  return {"lawn", "overhang", "neighbours", "terrain", "furniture", "louvres"};
+  return {"lawn", "overhang", "neighbors", "terrain", "furniture", "louvres"};
 }
 
 std::vector<std::string> lamp_kinds() {
