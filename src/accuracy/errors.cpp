@@ -255,7 +255,7 @@ Field side_by_side(const Field& one, const Field& other) {
   return both;
 }
 
-// Of all combinations of what is known the one with the least residual in a band, ||r||_A.
+// The combination of known solutions with the least residual in a band, ||r||_A.
 struct Combination {
   Eigen::ArrayXd irradiance;  // F y
   Eigen::ArrayXd residual;    // r = E + R F y - y
@@ -314,7 +314,7 @@ void InBands::solve_bands(const std::vector<Eigen::Index>& bands) {
   known_ = {side_by_side(known_.radiosity, radiosity), side_by_side(known_.irradiance, irradiance)};
 }
 
-// Finds what can be found from what is known; the residuals of the others.
+// Combines known solutions where they reach the tolerance; returns the residuals of the other bands.
 Field InBands::combine_others() {
   Field residuals(problem_.exitance.rows(), static_cast<Eigen::Index>(rest_.size()));
   std::vector<std::uint8_t> found(rest_.size());
@@ -335,7 +335,7 @@ Field InBands::combine_others() {
   return residuals(Eigen::all, columns);
 }
 
-// Bands that span the sources are solved first, then such as span what is missing yet in the others.
+// Solve the bands that span the sources first, then bands that span the residuals of the others.
 Field InBands::irradiance() {
   Field missing = problem_.exitance;
   while (!rest_.empty()) {

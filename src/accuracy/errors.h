@@ -48,8 +48,8 @@ struct SolvedProblem {
   bool closed = false;  ///< nothing gets lost: rows of the transport sum up to 1
 };
 
-/// A solved problem in the bands that solved_bands() names: what is linear in the light is the same for the others, but
-/// for a factor.
+/// A solved problem in the bands that solved_bands() names. Quantities that are linear in the light differ in the other
+/// bands by a factor only.
 struct InNeededBands {
   SolvedBands bands;
   RadiosityProblem problem;
@@ -136,7 +136,7 @@ Field solver_errors(const SolvedProblem& solved);
 /// The problem for the parents of a mesh.
 RadiosityProblem problem_of_parents(const NestedMesh& mesh, const RadiosityProblem& problem);
 
-/// What mesh_errors() tells of pairs, for rows of rays: F (B_h - B_2h), where B_2h = E + R P F B_2h is the solution on
+/// The counterpart of mesh_errors() for rows of rays: F (B_h - B_2h), where B_2h = E + R P F B_2h is the solution on
 /// the parents, P the mean over each. B_h - B_2h = (1 - P) B + R e, where the mean irradiance of parents is off by
 /// e = P F (1 - P) B + P F R e: how the light of a parent's patches differs is known to the patches, and is in the
 /// error only as far as it gets to other parents. So the error of the irradiance of each patch, W/m^2, is F (1 - P) B +

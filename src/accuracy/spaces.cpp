@@ -215,7 +215,7 @@ bool is_of(const Scene& scene, const PatchMesh& mesh, PatchIndex i, const Intere
          (group < scene.groups.size() && scene.groups[group] == interest.name);
 }
 
-// 1 for each patch of what is named, on whichever side of it. A side alone means that of everything.
+// 1 for each patch of the named parts, on either side. A side without a name means that side of all parts.
 Eigen::VectorXd meant_by(const Scene& scene, const PatchMesh& mesh, const Interest& interest) {
   if (interest.name.empty()) return Eigen::VectorXd::Ones(mesh.size());
   const std::vector<bool> into_room = facing_into(scene, mesh, interest.name);

@@ -44,10 +44,10 @@ Eigen::VectorXd inside_patches(const Scene& scene, const PatchMesh& mesh, const 
 Eigen::VectorXd inside_shells(const Scene& scene, const PatchMesh& mesh, Dividing by);
 
 /// 1 for each patch of a material, object or group with one of these names, or that faces into a room of one, else 0.
-/// A name that ends in ".inside" or ".outside" means the patches of what is named before that are inside a closed
-/// shell, or not; where no shell divides these, those that are `enclosed`, or not. ".inside" alone means that side of
-/// all. Without names 1 for those that are enclosed, or for all where none is or none reflects light. `enclosed` is
-/// Simulation::enclosed.
+/// A name that ends in ".inside" or ".outside" means the patches of the part named before it that are inside a
+/// closed shell, or not; where no shell divides these, those that are `enclosed`, or not. ".inside" alone means that
+/// side of all. Without names 1 for those that are enclosed, or for all where none is or none reflects light.
+/// `enclosed` is Simulation::enclosed.
 Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names,
                             const Eigen::VectorXd& enclosed);
 

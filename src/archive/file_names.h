@@ -14,6 +14,10 @@ inline constexpr const char* area = "area.npy";
 inline constexpr const char* exitance = "exitance.npy";
 inline constexpr const char* reflectance = "reflectance.npy";
 inline constexpr const char* lost_share = "lost_share.npy";
+/// How info.json describes the file of lost shares.
+inline constexpr const char* about_lost_share =
+    "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
+    "area, and that over which other polygons lie; unit 1";
 inline constexpr const char* raw_row_sum = "raw_row_sum.npy";
 inline constexpr const char* mesh = "mesh.vtp";
 inline constexpr const char* scene = "scene.json";

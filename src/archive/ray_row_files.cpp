@@ -369,9 +369,7 @@ Json files_of_rows(bool is_specular) {
   part[file_name::area] = "exposed area A_i of each patch; unit m^2";
   part[file_name::exitance] = "exitance of each patch by its material, a column per band; unit W/m^2";
   part[file_name::reflectance] = "diffuse reflectance of each patch, a column per band; unit 1";
-  part[file_name::lost_share] =
-      "per patch the share of its hemisphere that is open, that shows sides without patches, the covered share of its "
-      "area, and that over which other polygons lie; unit 1";
+  part[file_name::lost_share] = file_name::about_lost_share;
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
   part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
   return part;
