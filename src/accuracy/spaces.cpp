@@ -120,14 +120,14 @@ Shell shell_of(const Scene& scene, const Shells& shells, Solid solid) {
   std::vector<std::uint8_t> inner(2 * scene.polygons.size(), 0);
   for (const PolygonIndex p : solid.polygons) {
     const auto side = static_cast<std::size_t>(inner_side(solid, shells, p));
-    inner[2 * p + side] = 1;
+    inner[2 * std::size_t{p} + side] = 1;
     inner[2 * p + 1 - side] = 2;
   }
   return {std::move(solid), std::move(inner)};
 }
 
 bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
-  const std::uint8_t own = inner[2 * mesh.polygon[i] + static_cast<std::size_t>(mesh.side[i])];
+  const std::uint8_t own = inner[2 * std::size_t{mesh.polygon[i]} + static_cast<std::size_t>(mesh.side[i])];
   if (own != 0) return own == 1;
   return holds(solid, mesh.centroid[i] + step_off * solid.box.diagonal().norm() * mesh.normal[i]);
 }

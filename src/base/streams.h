@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+/// Names of the streams of random numbers. hash({seed, place, stream::name}) starts one: two purposes at one place draw
+/// independent numbers when their streams differ. Streams whose places have different keys may share a number.
+namespace patchlight::stream {
+
+enum Stream : std::uint64_t {
+  // Form factors and rows of rays
+  hemisphere = 0,
+  toward_bright_patches = 1,
+  lost_rays = 1,
+  repeated_run = 1,
+  ways_at_panes = 2,
+  row_estimate = 2,
+  points_on_lamps = 3,
+  later_meshes = 0x2d5,
+  signs_of_rows = 0x64726177,
+  signs_of_lights,
+  signs_of_mesh = 2,
+
+  // Light in mirrors: shared points, and the shift of each receiver or sensor
+  points_of_mirror_chains = 7,
+  shift_at_receiver = 8,
+  points_of_mirrored_sensors = 9,
+  shift_at_mirrored_sensor = 10,
+
+  // Quarters of patches
+  lamps_at_quarters = 1,
+  clear_at_quarters = 2,
+  points_at_quarters = 3,
+  halves_of_quarters = 0x9a7,
+
+  // Pictures and lightmaps
+  pixel_places = 1,
+  gather_without_record = 2,
+  lights_of_pixel = 3,
+  lights_of_texel = 1,
+  gathers_of_texel = 2,
+  buried_texels = 3,
+  panes_of_gather = 1,
+  bounce_directions = 3,
+  lights_of_bounce = 4,
+  panes_of_bounce = 5,
+  next_bounce = 6,
+  choice_of_lamp = 11,
+  place_on_lamp,
+  choice_of_luminaire,
+  place_on_luminaire,
+  sky_openings = 21,
+  sky_hemisphere,
+  ambient_occlusion = 31,
+
+  // Planning and spaces
+  goal_batch = 0x676f616c,
+  enclosure = 0x656e636c,
+
+  // Comparison with paths
+  path_starts = 0,
+  exposed_points = 1,
+  path_order = 4,
+  path_vertices = 6,
+  mirror_jitter = 11,
+  mirror_order,
+  mirror_luminaire,
+  mirror_chain,
+  path_seeds = 0x70617468,
+  mirror_tests = 0x74657374,
+  repeated_comparison = 0x61676169,
+};
+
+}  // namespace patchlight::stream
