@@ -9,17 +9,17 @@ namespace patchlight {
 
 /// The form factors between the patches of a scene.
 struct FormFactors {
-  Request request;  ///< as it was carried out
+  Request request;  ///< with its defaults filled in
   Plan plan;
   PatchMesh mesh;
   Exchange exchange;
-  Diagnostics notes = {};  ///< on polygons that lie one on the other
+  Diagnostics notes = {};  ///< on overlapping polygons
 };
 
 /// The first half of simulate(), for a scene that need not have a lamp: without one Sides::automatic means the front
-/// sides. All form factors are computed and kept, whatever AssemblyOptions::storage says. What the storage of closed
-/// exchange areas as floats takes from the rows, below 1e-7 of the area, is left out. What is not closed keeps the
-/// errors of its entries where closure will weigh by them. \throws InputError, MemoryError, Cancelled.
+/// sides. Computes and keeps all form factors for every value of AssemblyOptions::storage. Closed exchange areas are
+/// stored as floats; their rounding changes row sums by less than 1e-7 of the area. Exchange that is not closed keeps
+/// the errors of its entries where closure weighs by them. \throws InputError, MemoryError, Canceled.
 FormFactors find_form_factors(const Scene& scene, const Request& request, const Observer& observer = {});
 
 }  // namespace patchlight

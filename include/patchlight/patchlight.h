@@ -1,7 +1,7 @@
 #pragma once
 
 /// \file
-/// All of the library: simulate() takes a Scene and a Request and gives a Simulation.
+/// The whole library: simulate() takes a Scene and a Request and returns a Simulation.
 
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/base/diagnostics.h"
@@ -41,5 +41,5 @@
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
-/// How diffuse surfaces light each other: scenes, form factors, solvers, error bars and what is seen of a solution.
+/// How diffuse surfaces light each other: scenes, form factors, solvers, error bars and views of a solution.
 namespace patchlight {}

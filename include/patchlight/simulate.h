@@ -17,7 +17,7 @@
 
 namespace patchlight {
 
-/// What a stage cost.
+/// The time of one stage.
 struct StageCost {
   Stage stage = Stage::read;
   double seconds = 0;      ///< wall time
@@ -36,12 +36,12 @@ struct TransportFacts {
   std::string closure;              ///< which method closed the rows
 };
 
-/// One of the meshes on the way to an accuracy, and what it gave. Errors are relative: the error of the radiosity in
-/// the norm of the areas as a share of the reflected radiosity, ||dB||_A / ||B - E||_A, of the worst band.
+/// One mesh of a run that refines, with its errors. Errors are relative: the error of the radiosity in the norm of the
+/// areas as a share of the reflected radiosity, ||dB||_A / ||B - E||_A, of the worst band.
 struct AccuracyStep {
   PatchIndex patches = 0;
   PatchIndex new_patches = 0;  ///< those not in the mesh before
-  int samples = 0;             ///< of a pair; by rows of rays those of a patch in the mean, doubled ones included
+  int samples = 0;             ///< per pair; with Storage::rays the mean number per patch, doubled ones included
   double mesh = 0;
   double form_factor = 0;
   double solver = 0;
@@ -49,7 +49,7 @@ struct AccuracyStep {
   double display = 0;  ///< of the radiosity at the points of patches, which are drawn with their means
   double seconds = 0;  ///< since the start
   double cpu_seconds = 0;
-  bool inside = false;  ///< of Simulation::enclosed alone, as by daylight where nothing is named as of interest
+  bool inside = false;  ///< of Simulation::enclosed alone: the default by daylight
 };
 
 /// The relative errors of the patches inside, or outside, each as a share of the light that these patches reflect.
@@ -76,13 +76,13 @@ struct Simulation {
   std::vector<SpaceErrors> spaces = {};  ///< with error bars, where there is an inside and an outside among the
                                          ///< patches: by daylight the enclosed and the others, else as closed shells
                                          ///< with openings divide the patches of interest; else empty
-  Eigen::VectorXd enclosed = {};         ///< by daylight 1 for each patch of a space that holds what light gets in, as
-                                         ///< a room with windows, else 0; empty without sky and sun
+  Eigen::VectorXd enclosed = {};         ///< by daylight 1 for each patch of a space that keeps most of its light,
+                                         ///< e.g. a room with windows, else 0; empty without sky and sun
   std::vector<StageCost> costs;
-  Diagnostics notes = {};            ///< of the plan, and what of the scene, when looked at, may not be as meant
+  Diagnostics notes = {};            ///< of the plan, and on doubtful places of the scene
   Field direct_standard_error = {};  ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
-  Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, without what the size of patches and
-                                  ///< the solver err, which are not known; else empty
+  Field ray_standard_error = {};  ///< of the irradiance by Storage::rays, W/m^2, by sampling alone: without the errors
+                                  ///< of mesh and solver; else empty
   std::vector<Field> correlated_errors = {};  ///< equally likely draws of the sampling error of the irradiance that
                                               ///< patches have in common, W/m^2: their mean square is part of the
                                               ///< square of the sampling error. Sums over many patches need them, as
@@ -106,14 +106,14 @@ using RowBlocksOf =
 /// The mesh where it is known already.
 using MeshOf = std::function<PatchMesh()>;
 
-/// What finds the solution; solve() is one.
+/// A solver; solve() is one.
 using SolveWith = std::function<Solution(const RowTransport& transport, const RadiosityProblem& problem,
                                          const SolverOptions& options, const Observer& observer)>;
 
-/// Told of every mesh on the way to an accuracy, or of AccuracyOptions::local_cuts.
+/// Called with every mesh of a run that refines or has AccuracyOptions::local_cuts.
 using LookAt = std::function<void(const Simulation& simulation)>;
 
-/// Steps of simulate() that may be done otherwise.
+/// Steps of simulate() that a caller may replace.
 struct Steps {
   ExchangeOf exchange = {};         ///< empty: form factors are computed
   RayExchangeOf ray_exchange = {};  ///< with Storage::rays, without error bars of the mesh; empty: rays are traced
@@ -121,14 +121,14 @@ struct Steps {
   SolveWith solve = {};             ///< empty: patchlight::solve()
   LookAt look = {};
   MeshOf mesh = {};  ///< without error bars; empty: the scene is tessellated
-  /// Where this is given, a run that the observer stops returns the last mesh that was solved, or, as long as there is
-  /// none, the last iterate of its solver, as Simulation::unfinished; where there is neither it throws Cancelled, as
-  /// without this. Called as soon as there is something to return, and again with what is better.
+  /// If set, a run that the observer stops returns its last solved mesh, or else the last iterate of its solver, with
+  /// Simulation::unfinished. Without either it throws Canceled. Called when there is a first result to return, and
+  /// after each better one.
   std::function<void()> keeps_unfinished = {};
 };
 
 /// From a scene to converged radiosities: the whole program.
-/// \throws InputError, MemoryError, Cancelled, and what the steps throw.
+/// \throws InputError, MemoryError, Canceled, and the exceptions of the steps.
 Simulation simulate(const Scene& scene, const Request& request = {}, const Observer& observer = {},
                     const Steps& with = {});
 

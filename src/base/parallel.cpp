@@ -20,8 +20,8 @@ namespace patchlight {
 namespace {
 
 #if defined(__SANITIZE_THREAD__)
-// TBB is not compiled for the thread sanitizer, which sees none of the order that it keeps. Here plain threads take the
-// items one by one, and nothing else orders what they do.
+// TBB is not compiled for the thread sanitizer, which does not see its synchronization. Here plain threads take the
+// items one by one, without other synchronization.
 void for_each_item(std::size_t count, const auto& body, const auto&... /*partitioner*/) {
   constexpr std::size_t most_threads = 4;
   std::atomic<std::size_t> next{0};
@@ -57,7 +57,7 @@ void parallel_for(std::size_t count, Stage stage, const Observer& observer,
                   const std::function<void(std::size_t)>& body) {
   if (!observer) return parallel_for(count, body);
 
-  // Whichever thread finishes an item tells the observer, at most every tenth of a second and one at a time.
+  // The thread that finishes an item calls the observer, at most every tenth of a second and one thread at a time.
   constexpr double interval = 0.1;
   std::atomic<std::size_t> done{0};
   std::atomic<bool> stopped{false};

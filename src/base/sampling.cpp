@@ -44,7 +44,7 @@ SobolDirections reversed_directions() {
   return directions;
 }
 
-// The centre of the interval of width 2^-32 that the integer stands for.
+// The center of the interval of width 2^-32 that starts at x 2^-32.
 double to_unit_interval(std::uint32_t x) { return (x + 0.5) * 0x1p-32; }
 
 }  // namespace

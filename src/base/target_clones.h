@@ -1,8 +1,7 @@
 #pragma once
 
-/// A function that is compiled for several instruction sets, the levels of the x86-64 ABI (AVX2 with FMA, AVX-512); the
-/// machine chooses when the program starts, by what it can, whoever made it. Sanitizers and clang take the plain
-/// version.
+/// A function that is compiled for several instruction sets, the levels of the x86-64 ABI (AVX2 with FMA, AVX-512). The
+/// program chooses one when it starts, by the features of the processor. Sanitizers and clang take the plain version.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && !defined(PATCHLIGHT_ONE_INSTRUCTION_SET)
 #define PATCHLIGHT_TARGET_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
@@ -24,5 +23,5 @@
 #define PATCHLIGHT_UNROLL
 #endif
 
-/// What such a function calls has to become part of it.
+/// For functions that such a function calls: they must be inlined into it.
 #define PATCHLIGHT_INLINE [[gnu::always_inline]] inline

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The lengths and shares at which two things are one. A place in the code that needs another length says why.
+/// The lengths and shares at which two things count as one. Code that needs another length gives the reason.
 namespace patchlight {
 
 /// Numbers that are equal but for the rounding of a few operations in double precision, relative to their size.
@@ -18,7 +18,7 @@ struct Tolerances {
   explicit Tolerances(double extent)
       : in_plane(tolerance_of_shapes * extent), weld(tolerance_of_coordinates * extent) {}
 
-  double in_plane;  ///< a point nearer to a plane lies in it, where double precision tells
+  double in_plane;  ///< a point nearer to a plane lies in it, for coordinates in double precision
   double weld;      ///< vertices nearer than this are one; rays start this far off their surface
 };
 

@@ -80,7 +80,7 @@ enum class Severity : std::uint8_t { error, warning, remark, note };
 
 /// A face as it stands in the model.
 struct ModelFace {
-  std::vector<Point> corners = {};  ///< metres
+  std::vector<Point> corners = {};  ///< meters
   std::uint32_t file = 0;           ///< index into Scene::files
   std::uint32_t line = 0;           ///< from 1; 0 if unknown
   std::uint32_t face = 0;           ///< number of the face in the model, from 0

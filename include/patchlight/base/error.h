@@ -6,7 +6,7 @@
 namespace patchlight {
 
 /// The user's input cannot be used. `where` names the file and line or the field of the request ("room.obj:12",
-/// "mesh.max_edge"); the message says what was found, what was expected and how to mend it.
+/// "mesh.max_edge"); the message names the value found, the value expected and the remedy.
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& where, const std::string& message) : std::runtime_error(where + ": " + message) {}

@@ -8,13 +8,13 @@
 
 namespace patchlight {
 
-/// A position in metres.
+/// A position in meters.
 using Point = Eigen::Vector3d;
 
-/// A direction or displacement; displacements are in metres.
+/// A direction or displacement; displacements are in meters.
 using Vector = Eigen::Vector3d;
 
-/// An axis-aligned box in metres.
+/// An axis-aligned box in meters.
 using Box = Eigen::AlignedBox3d;
 
 /// Vector area of a closed polygon (Newell): its length is the area in m^2, its direction the side from which
