@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "lighting/shifted_points.h"
+#include "lighting/receiver.h"
 #include "mesh/patch_lookup.h"
 #include "visibility/occluder.h"
 

@@ -2,7 +2,7 @@
 
 #include "patchlight/gather/gather.h"
 
-#include "lighting/mirror_rays.h"
+#include "lighting/mirror_paths.h"
 
 namespace patchlight {
 
