@@ -1,6 +1,7 @@
 #include "gather/doubtful_sensors.h"
 
 #include "base/parallel.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <cassert>
@@ -13,12 +14,6 @@ namespace {
 
 constexpr std::size_t most_sentences = 5;
 
-// In widths of a patch, the largest distance from its middle to a corner twice.
-constexpr double close = 1.5;
-
-// Points nearer to the plane of a patch than this share of its width lie in it.
-constexpr double in_plane = 1e-6;
-
 std::vector<PatchIndex> patches_with_pictures(const Scene& scene, const PatchMesh& mesh) {
   std::vector<PatchIndex> found;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -28,6 +23,7 @@ std::vector<PatchIndex> patches_with_pictures(const Scene& scene, const PatchMes
   return found;
 }
 
+// Is it nearer than one and a half widths, twice the largest distance of a corner from the middle?
 bool looks_at_from_close(const Sensor& sensor, const PatchMesh& mesh, PatchIndex patch) {
   const PatchCorners corners = mesh.corner_points(patch);
   const std::span<const Point> points = corners;
@@ -38,10 +34,11 @@ bool looks_at_from_close(const Sensor& sensor, const PatchMesh& mesh, PatchIndex
   };
   const Point& middle = mesh.centroid[patch];
   const double width = 2 * farthest(middle);
-  if ((sensor.point - middle).norm() > close * width) return false;
-  if (!(mesh.normal[patch].dot(sensor.point - middle) > in_plane * width)) return false;
-  return std::any_of(points.begin(), points.end(),
-                     [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) > in_plane * width; });
+  if ((sensor.point - middle).norm() > 1.5 * width) return false;
+  if (!(mesh.normal[patch].dot(sensor.point - middle) > tolerance_of_coordinates * width)) return false;
+  return std::any_of(points.begin(), points.end(), [&](const Point& corner) {
+    return sensor.normal.dot(corner - sensor.point) > tolerance_of_coordinates * width;
+  });
 }
 
 Diagnostic finding(const SensorGroup& group, std::size_t k, Standing standing) {

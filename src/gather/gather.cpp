@@ -4,6 +4,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include "base/parallel.h"
+#include "base/tolerances.h"
 #include "gather/sources.h"
 #include "mesh/interpolate.h"
 #include "mesh/small_patches.h"
@@ -25,34 +26,15 @@ namespace {
 
 // How the radiosity of patches (rows) varies on them: the mean over each patch plus a plane.
 struct Slopes {
-  Field gradient;  // along the surface, W/m^2 per metre: three components of the first band, then those of the next
+  Field gradient;  // along the surface, W/m^2 per meter: three components of the first band, then those of the next
   Field residual;  // an allowance for how far the radiosity at a point is from the plane where it is curved, W/m^2
   Field unknown;   // root mean square of the part that the plane does not explain, W/m^2
 };
 
-// Keeps the fit soluble where all neighbours lie in one direction, as a share of the squared distances.
-constexpr double damping = 1e-6;
-
-// A plane has two slopes, so that residuals begin with the third neighbour.
-constexpr std::size_t slopes_of_a_plane = 2;
-
-// An allowance: of a radiosity that is curved evenly, a sixth of the residual at the patches around is left at the edge
-// of the patch, and more where it has a peak narrower than these. docs/theory/irradiance-at-a-point.md has the value.
-constexpr double residual_inside = 0.5;
-
-// Patches whose radiosities differ by no more than this factor are taken to see each other.
-constexpr double about_equal = 1.25;
-
-// How far over the polygon they look for each other, as a share of their distance.
-constexpr double height_of_sight = 0.1;
-
-// So few patches of a polygon side may be alike by symmetry, whatever light is on it.
-constexpr PatchIndex few_patches = 4;
-
 using Gradient = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
-// Of a linear function with this gradient, over a patch: per triangle of its fan 1/12 of the sum over the corners of
-// the squared differences from its mean, and that of its mean from the patch's.
+// The variance of a linear function with this gradient over a patch: per triangle of its fan 1/12 of the sum over the
+// corners of the squared differences from its mean, and that of its mean from the patch's.
 double variance_over(const PatchMesh& mesh, PatchIndex j, const Vector& gradient) {
   const PatchCorners corners = mesh.corner_points(j);
   const std::span<const Point> points = corners;
@@ -89,17 +71,18 @@ class Planes {
   PatchesAtVertices at_vertex_;
 };
 
+// Such patches are taken to see each other.
 bool Planes::are_about_equal(PatchIndex i, PatchIndex j) const {
   const auto larger = values_.row(i).max(values_.row(j));
   const auto smaller = values_.row(i).min(values_.row(j));
-  return (larger <= about_equal * smaller).all();
+  return (larger <= 1.25 * smaller).all();
 }
 
-// Those that nothing hides from this one.
+// Those that nothing hides from this one, a tenth of their distance above the polygon.
 std::vector<PatchIndex> Planes::in_sight(PatchIndex j, std::span<const PatchIndex> others) const {
   std::vector<Segment> segments;
   for (const PatchIndex i : others) {
-    const Vector up = height_of_sight * (mesh_.centroid[i] - mesh_.centroid[j]).norm() * mesh_.normal[j];
+    const Vector up = 0.1 * (mesh_.centroid[i] - mesh_.centroid[j]).norm() * mesh_.normal[j];
     segments.push_back({mesh_.centroid[j] + up, mesh_.centroid[i] + up});
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
@@ -129,7 +112,7 @@ std::vector<PatchIndex> Planes::patches_around(PatchIndex j) const {
 }
 
 // (sum d d^T) g = sum d (B_i - B_j), d the way from one centroid to the other; without slopes that would make the plane
-// negative at a corner.
+// negative at a corner. Damping keeps the fit soluble where all neighbors lie in one direction.
 Gradient Planes::fitted(PatchIndex j, std::span<const PatchIndex> around) const {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Gradient products = Gradient::Zero(3, values_.cols());
@@ -140,7 +123,7 @@ Gradient Planes::fitted(PatchIndex j, std::span<const PatchIndex> around) const 
   }
   const double size = squares.trace();
   if (!(size > 0)) return Gradient::Zero(3, values_.cols());
-  squares += size * (mesh_.normal[j] * mesh_.normal[j].transpose() + damping * Eigen::Matrix3d::Identity());
+  squares += size * (mesh_.normal[j] * mesh_.normal[j].transpose() + 1e-6 * Eigen::Matrix3d::Identity());
   Gradient gradient = squares.ldlt().solve(products);
   const PatchCorners corners = mesh_.corner_points(j);
   for (Eigen::Index band = 0; band < values_.cols(); ++band) {
@@ -152,7 +135,8 @@ Gradient Planes::fitted(PatchIndex j, std::span<const PatchIndex> around) const 
   return gradient;
 }
 
-// Root mean square, by the degrees of freedom that the fit leaves; never more than the differences themselves.
+// Root mean square, by the degrees of freedom that the two slopes of a plane leave; never more than the differences
+// themselves.
 Spectrum Planes::residual(PatchIndex j, std::span<const PatchIndex> around, const Gradient& gradient) const {
   Spectrum squares = Spectrum::Zero(values_.cols());
   Spectrum differences = Spectrum::Zero(values_.cols());
@@ -163,23 +147,25 @@ Spectrum Planes::residual(PatchIndex j, std::span<const PatchIndex> around, cons
     differences += difference.square();
   }
   const auto count = static_cast<double>(around.size());
-  if (around.size() <= slopes_of_a_plane) return (differences / std::max(count, 1.0)).sqrt();
-  return (squares / (count - slopes_of_a_plane)).min(differences / count).sqrt();
+  if (around.size() <= 2) return (differences / std::max(count, 1.0)).sqrt();
+  return (squares / (count - 2)).min(differences / count).sqrt();
 }
 
+// So few patches may be alike by symmetry, whatever light is on the polygon side.
 bool has_few_patches(const PatchMesh& mesh, PatchIndex j) {
   const auto [begin, end] = mesh.patches_on(mesh.polygon[j], mesh.side[j]);
-  return end - begin <= few_patches;
+  return end - begin <= 4;
 }
 
 // Fitted to the differences from the patches of the same polygon side that share a vertex, by least squares; 0 where
-// there are none. Where one of two patches has a quarter more than the other and they do not see each other, a tenth
-// of their distance above the polygon, something stands between them, and they say nothing of each other. A plane
-// that would fall below 0 at a corner of its patch is made less steep.
+// there are none. Where one of two patches has a quarter more than the other and they do not see each other, something
+// stands between them, and neither counts for the other. A plane that would fall below 0 at a corner of its patch is
+// made less steep.
 //
-// The residual is half of that at the centroids of the patches around, or of all of the difference where these are
-// too few for a residual. Unknown is the part of `errors.display` that the plane does not explain, or, where that is
-// not known and a polygon side has no more than four patches, all that these reflect: nothing tells how that varies.
+// The residual allows for curvature: half of the residual at the centroids of the patches around, or of the difference
+// where these are too few. If the radiosity is curved evenly, a sixth of it is left at the edge of the patch, and more
+// at narrower peaks (docs/theory/irradiance-at-a-point.md). Unknown is the part of `errors.display` that the plane does
+// not explain. If that is not known and a polygon side has no more than four patches, it is all that these reflect.
 // O(patches) with a bounded number around each vertex. Throws Cancelled.
 Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder,
                  const RadiosityErrors& errors, const Observer& observer) {
@@ -191,7 +177,7 @@ Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder&
     const auto j = static_cast<PatchIndex>(row);
     const std::vector<PatchIndex> around = planes.patches_around(j);
     const Gradient gradient = planes.fitted(j, around);
-    found.residual.row(j) = residual_inside * planes.residual(j, around, gradient);
+    found.residual.row(j) = 0.5 * planes.residual(j, around, gradient);
     for (Eigen::Index band = 0; band < values.cols(); ++band) {
       found.gradient.row(j).segment(3 * band, 3) = gradient.col(band).transpose().array();
       if (display.size() == 0) continue;
@@ -204,10 +190,7 @@ Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder&
   return found;
 }
 
-// A sensor that is nearer to a polygon's plane lies on it, as a share of the scene's extent: the occluder's own limit.
-constexpr double on_plane_tolerance = 1e-9;
-
-// What is gathered, and how far that may be off.
+// The radiosity to gather, and its errors.
 struct Light {
   const PatchMesh& mesh;
   const FieldView& radiosity;
@@ -227,7 +210,7 @@ struct Reading {
   Spectrum reflected;    // the part that patches have reflected
 };
 
-// What of each band gets through coloured panes.
+// The part of each band that gets through colored panes.
 Spectrum of_bands(const Spectrum& values, const VisibleShare& share) {
   return share.colour.size() > 0 ? Spectrum(values * share.colour) : values;
 }
@@ -288,7 +271,7 @@ Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<
     if (solver.size() > 0) reading.solver += weight * solver.row(j);
     if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
     if (light.slopes.residual.size() == 0) continue;
-    // What is curved evenly has no first moment about the plane, so that it counts in the second order.
+    // Even curvature has no first moment about the plane, so that it counts in the second order.
     const double squared = squared_unevenness(light.mesh, j, sensor.point);
     const Spectrum by_points =
         (squared * light.slopes.residual.row(j)).max(std::sqrt(squared) * light.slopes.unknown.row(j));
@@ -326,9 +309,9 @@ std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<co
 
 // How many times as many rays would leave the wanted error: no number where nothing is seen yet of what may be seen.
 double wanted_factor(const Reading& reading, const GatherOptions& options) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Spectrum allowed = (options.wanted_error * reading.mean).square();
-  const Spectrum unseen = (reading.variance > 0).select(Spectrum::Constant(allowed.size(), infinity), 1.0);
+  const Spectrum unseen =
+      (reading.variance > 0).select(Spectrum::Constant(allowed.size(), std::numeric_limits<double>::infinity()), 1.0);
   const Spectrum factor = (reading.mean > 0).select(reading.variance / allowed, unseen);
   return std::max(1.0, factor.maxCoeff());
 }
@@ -357,7 +340,7 @@ Field column_of(std::span<const Reading> readings, Spectrum Reading::*part, Eige
   return all;
 }
 
-// What planes leave of the light on patches, and what patches of the same mesh may be off themselves.
+// The errors by light that planes do not explain, and by the patches of the same mesh themselves.
 Field mesh_part(std::span<const Reading> readings, const Field& irradiance, const RadiosityErrors& errors) {
   const Eigen::Index bands = irradiance.cols();
   const Field unexplained =
@@ -381,7 +364,8 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
   const Light light{mesh, radiosity,
                     options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
                     options.errors};
-  const double tolerance = on_plane_tolerance / occluder.frame().scale;
+  // A sensor that is nearer to a polygon's plane lies on it: the occluder's own limit.
+  const double tolerance = tolerance_of_shapes / occluder.frame().scale;
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {
     const std::vector<Source> sources = sources_before(sensors[k], mesh, radiosity, tolerance);

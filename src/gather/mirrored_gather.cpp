@@ -2,7 +2,9 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "lighting/shifted_points.h"
+#include "base/streams.h"
+#include "gather/sources.h"
+#include "lighting/receiver.h"
 #include "mesh/patch_lookup.h"
 #include "visibility/occluder.h"
 
@@ -17,10 +19,13 @@
 namespace patchlight {
 namespace {
 
-constexpr std::uint32_t mirrored_replicates = 8;
-
-// What a sensor sees of patches in mirrors: per patch, what its radiosity counts in the sensor's irradiance.
+// The weight of each patch that a sensor sees in mirrors: the sensor's irradiance by a radiosity of 1.
 using PatchWeights = std::map<PatchIndex, Spectrum>;
+
+void add_weight(PatchWeights& weights, PatchIndex patch, const Spectrum& weight) {
+  const auto [place, is_new] = weights.insert({patch, weight});
+  if (!is_new) place->second += weight;
+}
 
 struct SeenInMirrors {
   const PatchMesh& mesh;
@@ -32,7 +37,7 @@ struct SeenInMirrors {
   void add(const SurfacePoint& at, std::uint32_t replicate, std::uint32_t key, PatchWeights& into) const;
 };
 
-// L = B h(theta) / (h pi) of what each ray meets.
+// L = B h(theta) / (h pi) of the patch that each ray meets.
 void SeenInMirrors::add(const SurfacePoint& at, std::uint32_t replicate, std::uint32_t key, PatchWeights& into) const {
   std::vector<MirrorRay> seen;
   view.add_rays(at, shifted(points[replicate], key), seen);
@@ -45,8 +50,7 @@ void SeenInMirrors::add(const SurfacePoint& at, std::uint32_t replicate, std::ui
     if (!patch) continue;
     const Spectrum weight =
         seen[k].weight * occluder.relative_held(hits[k]->polygon, hits[k]->direction) / std::numbers::pi;
-    const auto [place, is_new] = into.insert({*patch, weight});
-    if (!is_new) place->second += weight;
+    add_weight(into, *patch, weight);
   }
 }
 
@@ -57,7 +61,7 @@ Spectrum sum_of(const PatchWeights& weights, const FieldView& field, Eigen::Inde
   return sum;
 }
 
-// Independent errors of patches add up in squares, and each draw of correlated ones as light does.
+// Independent errors of patches add up in squares, and each draw of correlated ones like light.
 Spectrum sampling_variance(const PatchWeights& weights, const RadiosityErrors& errors, Eigen::Index bands) {
   Spectrum sum = Spectrum::Zero(bands);
   if (errors.sampling.size() == 0) return sum;
@@ -73,10 +77,9 @@ GatheredIrradiance gather_mirrored(const PatchMesh& mesh, const FieldView& radio
                                    const Occluder& occluder, std::span<const Sensor> sensors,
                                    const MirroredGatherOptions& options, const Observer& observer) {
   SeenInMirrors gather{mesh, view, occluder, PatchLookup(mesh), {}};
-  const std::uint32_t each =
-      std::bit_ceil(std::max(2U, static_cast<std::uint32_t>(options.rays) / mirrored_replicates));
-  for (std::uint32_t r = 0; r < mirrored_replicates; ++r)
-    gather.points.push_back(scrambled_sobol(each, hash({options.seed, r, 9})));
+  const std::uint32_t each = std::bit_ceil(std::max(2U, static_cast<std::uint32_t>(options.rays) / most_replicates));
+  for (std::uint32_t r = 0; r < most_replicates; ++r)
+    gather.points.push_back(scrambled_sobol(each, hash({options.seed, r, stream::points_of_mirrored_sensors})));
 
   const auto rows = static_cast<Eigen::Index>(sensors.size());
   const Eigen::Index bands = radiosity.cols();
@@ -85,21 +88,17 @@ GatheredIrradiance gather_mirrored(const PatchMesh& mesh, const FieldView& radio
   parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {
     const SurfacePoint at{sensors[k].point, sensors[k].normal, no_polygon};
     PatchWeights all;
-    Field means(mirrored_replicates, bands);
-    for (std::uint32_t r = 0; r < mirrored_replicates; ++r) {
+    Field means(most_replicates, bands);
+    for (std::uint32_t r = 0; r < most_replicates; ++r) {
       PatchWeights weights;
-      gather.add(at, r, hash({options.seed, k, r, 10}), weights);
+      gather.add(at, r, hash({options.seed, k, r, stream::shift_at_mirrored_sensor}), weights);
       means.row(r) = sum_of(weights, radiosity, bands);
-      for (const auto& [patch, weight] : weights) {
-        const auto [place, is_new] = all.insert({patch, weight / mirrored_replicates});
-        if (!is_new) place->second += weight / mirrored_replicates;
-      }
+      for (const auto& [patch, weight] : weights) add_weight(all, patch, weight / most_replicates);
     }
     const auto row = static_cast<Eigen::Index>(k);
-    const Spectrum mean = means.colwise().mean();
-    const Spectrum squares = means.square().colwise().mean();
+    const auto [mean, variance] = estimate_of(means);
     found.irradiance.row(row) = mean;
-    found.errors.rays.row(row) = ((squares - mean.square()).max(0.0) / (mirrored_replicates - 1)).sqrt();
+    found.errors.rays.row(row) = variance.sqrt();
     found.errors.sampling.row(row) = sampling_variance(all, options.errors, bands).sqrt();
     found.errors.mesh.row(row) = sum_of(all, options.errors.mesh, bands);
     found.errors.solver.row(row) = sum_of(all, options.errors.solver, bands);

@@ -50,9 +50,9 @@ GroupReadings statistics(std::span<const std::size_t> sensors, const Readings& r
     found.min = std::min(found.min, value.value);
     found.max = std::max(found.max, value.value);
     found.mean += value.value / count;
-    // By Minkowski's inequality the standard error of a mean is at most the mean of the standard errors.
+    // Minkowski's inequality: the standard error of a mean is at most the mean of the standard errors.
     found.standard_error_of_mean += value.standard_error / count;
-    // What is not known of one is not known of all.
+    // An unknown error of one sensor makes the largest one unknown.
     const bool is_unknown = std::isnan(value.standard_error);
     if (is_unknown || value.standard_error > found.largest_standard_error)
       found.largest_standard_error = value.standard_error;

@@ -1,13 +1,10 @@
 #include "gather/sensor_places.h"
 
-#include "patchlight/scene/sides.h"
-
 #include "base/parallel.h"
-#include "gather/facets.h"
+#include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
 #include "scene/weld.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +20,56 @@
 namespace patchlight {
 namespace {
 
+// A polygon to compare points with.
+struct Facet {
+  std::vector<Point> corners;
+  Vector normal;    // unit, of its front
+  double size = 0;  // meters, the diagonal of its bounds
+
+  // Meters before its front.
+  double height(const Point& point) const { return normal.dot(point - corners[0]); }
+};
+
+std::vector<Facet> facets_of(const Scene& scene) {
+  std::vector<Facet> facets;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    Facet facet{corner_points(scene, p), front_normal(scene, p)};
+    Box box;
+    for (const Point& corner : facet.corners) box.extend(corner);
+    facet.size = box.diagonal().norm();
+    facets.push_back(std::move(facet));
+  }
+  return facets;
+}
+
+double distance_to_segment(const Point& point, const Point& a, const Point& b) {
+  const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (point - a - along * (b - a)).norm();
+}
+
+// Winding number of the facet around the point by the angles under which its edges are seen; seams cancel.
+bool is_over(const Point& point, const Facet& facet) {
+  double angle = 0;
+  for (std::size_t k = 0; k < facet.corners.size(); ++k) {
+    const Vector a = facet.corners[k] - point;
+    const Vector b = facet.corners[(k + 1) % facet.corners.size()] - point;
+    angle += std::atan2(a.cross(b).dot(facet.normal), a.dot(b));
+  }
+  return std::abs(angle) > std::numbers::pi;
+}
+
+// True when the point is no farther than `tolerance`, in meters, from the polygon.
+bool lies_on(const Point& point, const Facet& facet, double tolerance) {
+  if (std::abs(facet.height(point)) > tolerance) return false;
+  if (is_over(point, facet)) return true;
+  for (std::size_t k = 0; k < facet.corners.size(); ++k) {
+    const Point& next = facet.corners[(k + 1) % facet.corners.size()];
+    if (distance_to_segment(point, facet.corners[k], next) <= tolerance) return true;
+  }
+  return false;
+}
+
 constexpr std::size_t directions_around = 64;
-
-// A rim lies on a polygon that is no farther away than this share of the scene's extent.
-constexpr double rim_tolerance = 1e-6;
-
-// Places met are looked at from short of them by this share of the way.
-constexpr double short_of = 0.01;
 
 // Directions spread over the sphere: a spiral with the golden angle between one and the next.
 std::vector<Vector> directions() {
@@ -58,7 +98,7 @@ Hits hits_around(const Point& point, const Occluder& occluder) {
   return hits;
 }
 
-// Sides that take part, by both ways to choose them.
+// Sides that are simulated, by both ways to choose them.
 struct TakingPart {
   const KeptSides& chosen;
   KeptSides automatic;
@@ -82,7 +122,7 @@ struct Walls {
   TakingPart takes_part;
   Shells shells;
   std::vector<std::uint32_t> place;  // per vertex: the first one that is welded with it
-  double tolerance = 0;              // metres
+  double tolerance = 0;              // meters
   std::vector<Point> lamps;          // a point on each
 
   bool is_seen_from_behind(const Hit& hit) const {
@@ -140,7 +180,7 @@ bool Walls::sees_lamp(const Point& point, const Hits& hits) const {
   std::vector<Segment> segments;
   for (const Point& lamp : lamps) {
     segments.push_back({point, lamp});
-    for (const Hit& hit : hits) segments.push_back({hit.point + short_of * (point - hit.point), lamp});
+    for (const Hit& hit : hits) segments.push_back({hit.point + 0.01 * (point - hit.point), lamp});  // short of it
   }
   const std::vector<std::uint8_t> blocked = occluder.occluded(segments);
   return std::find(blocked.begin(), blocked.end(), 0) != blocked.end();
@@ -176,10 +216,10 @@ std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& side
                     {sides, kept_sides(scene, Sides::automatic)},
                     shells_of(scene),
                     welded(scene.vertices, weld_distance(scene)),
-                    rim_tolerance * extent_of(scene),
+                    Tolerances(extent_of(scene)).weld,
                     points_on_lamps(scene, facets)};
 
-  // 1. What each point has around it: sides that take no part, or a shell that may be a wall
+  // 1. The surroundings of each point: sides that are not simulated, or a shell that may be a wall
   std::vector<std::uint8_t> inside(points.size(), 0);
   std::vector<std::optional<PolygonIndex>> shell(points.size());
   parallel_for(points.size(), [&](std::size_t k) {
@@ -201,37 +241,28 @@ std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& side
   return inside;
 }
 
-// A sensor lies on a polygon when it is nearer to it than this share of the polygon's size: coordinates are often
-// written with five or six digits.
-constexpr double share_of_polygon = 1e-5;
-// Or than this share of the scene's extent, ten times the resolution of shadow rays.
-constexpr double share_of_scene = 1e-6;
-
-// A sensor that faces along the normal, with a cosine so near to 1, sends no ray to where the polygon hides something:
-// it is read next to it, just far enough for the occluder to know on which side.
-constexpr double along_normal = 1 - 1e-6;
-constexpr double next_to_it = 2e-9;
-
-// A sensor faces along a surface when the cosine between its direction and the normal is larger.
-constexpr double facing = 1e-2;
-
-// A place, and a point so far before what it lies on that rays to behind it meet that.
+// A place, and a point so far before its polygon that rays to places behind the polygon meet it.
 struct PlaceAndPoint {
   SensorPlace place;
   Point before;
 };
 
+// A sensor lies on a polygon when it is nearer to it than 1e-5 of the polygon's size: coordinates are often written
+// with five or six digits. Ten times the resolution of shadow rays is near enough, too. If it faces along the normal,
+// it sends no ray to where the polygon hides something. Then it is read just far enough from the polygon for the
+// occluder to know on which side.
 PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Facet> facets, double extent) {
   SensorPlace place{sensor};
   Point before = sensor.point;
   for (const Facet& facet : facets) {
-    const double distance = std::max(share_of_polygon * facet.size, share_of_scene * extent);
+    const double distance = std::max(1e-5 * facet.size, Tolerances(extent).weld);
     if (!lies_on(place.sensor.point, facet, distance)) continue;
     const double cosine = facet.normal.dot(sensor.normal);
-    if (std::abs(cosine) < facing) {
+    if (std::abs(cosine) < 0.01) {
       place.standing = Standing::undecided;
     } else {
-      const double height = std::abs(cosine) > along_normal ? next_to_it * extent : distance;
+      const double height =
+          std::abs(cosine) > 1 - tolerance_of_coordinates ? 2 * tolerance_of_shapes * extent : distance;
       const Vector facing_normal = std::copysign(1.0, cosine) * facet.normal;
       const double lies_at = facing_normal.dot(place.sensor.point - facet.corners[0]);
       place.sensor.point += (height - lies_at) * facing_normal;

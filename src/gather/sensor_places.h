@@ -10,9 +10,9 @@
 
 namespace patchlight {
 
-/// What a sensor's place means for its reading.
+/// The meaning of a sensor's place for its reading.
 enum class Standing : std::uint8_t {
-  free,         ///< light that reaches the place is what is asked for
+  free,         ///< it reads the light that reaches the place
   inside_wall,  ///< the place is inside a solid: there is nothing to read
   undecided     ///< it lies in a surface that it does not face along: rounding decides on which side
 };
@@ -25,10 +25,11 @@ struct SensorPlace {
 
 /// Those of all sensors, group after group. A sensor nearer to a polygon than 1e-5 of the polygon's size (or
 /// 1e-6 of the scene's) lies on it: it is read just before the side to which it faces, whichever side rounding has left
-/// it on, and at that distance if it does not face along the normal. It is inside a wall when all of 64 rays in all
-/// directions meet sides that take no part, by `sides` or by Sides::automatic, or meet from behind the polygons of one
-/// shell that is open only where it stands on other polygons, or meet those, and neither the sensor nor the places met
-/// see a lamp. The occluder must be one of all polygons. O(sensors x polygons).
+/// it on, and at that distance if it does not face along the normal. A sensor is inside a wall in two cases. All of 64
+/// rays in all directions meet sides that are not simulated, by `sides` or by Sides::automatic. Or each of them meets
+/// such a side, or from behind the polygons of one shell that is open only where it stands on other polygons, or these
+/// polygons; and neither the sensor nor the places met see a lamp. The occluder must be one of all polygons.
+/// O(sensors x polygons).
 std::vector<SensorPlace> place_sensors(const Scene& scene, const std::vector<SensorGroup>& groups,
                                        const KeptSides& sides, const Occluder& occluder);
 

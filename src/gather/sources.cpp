@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +10,15 @@
 namespace patchlight {
 namespace {
 
-constexpr std::uint32_t most_replicates = 8;
-
-// Of one replicate; where there are more rays, their points begin anew with another shift.
+// Points of one replicate; where there are more rays, they repeat with another shift.
 constexpr std::uint32_t most_points = 4096;
 
-// Coordinates in a unit scene are rounded to so many steps, so that rounding in another unit leaves the random numbers
-// as they are. Round coordinates do not lie midway between two.
-constexpr double steps = 1e6 * std::numbers::pi;
-
-// A key of a place, whatever else is asked for with it.
+// A key of a place in a unit scene. Its coordinates are rounded to steps, so that rounding in another unit leaves the
+// random numbers as they are. Round coordinates do not lie midway between two steps.
 std::uint32_t key_of(const Vector& place) {
   std::array<std::uint64_t, 3> rounded{};
   for (int d = 0; d < 3; ++d)
-    rounded[static_cast<std::size_t>(d)] = static_cast<std::uint64_t>(std::llround(steps * place[d]));
+    rounded[static_cast<std::size_t>(d)] = static_cast<std::uint64_t>(std::llround(1e6 * std::numbers::pi * place[d]));
   return hash({rounded[0], rounded[1], rounded[2]});
 }
 
@@ -40,7 +34,7 @@ struct Weights {
   Spectrum by_band = {};  // what is reached in each band, where these differ
 };
 
-// The ratios of what is reached to all, with their covariance by the scatter of the replicates about them (Cochran
+// The ratios of the reached weights to all, with their covariance by the scatter of the replicates about them (Cochran
 // 1977, section 6.4).
 VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   Eigen::Vector4d reached = Eigen::Vector4d::Zero();

@@ -22,15 +22,15 @@ struct Source {
   double light_share = 0;      ///< of the sensor's unoccluded irradiance, mean of the bands that have any
 };
 
-/// Those before which the sensor stands by more than `tolerance`, in metres, and that are before it, in the order of
+/// Those before which the sensor stands by more than `tolerance`, in meters, and that are before it, in the order of
 /// the mesh, by the light of the given radiosity. No side of a polygon on which a sensor lies is before it.
 std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
                                    double tolerance);
 
-/// What shadow rays to a source say, weighted by geometry terms.
+/// The estimate by shadow rays to a source, weighted by geometry terms.
 struct VisibleShare {
   Eigen::Vector4d moments = Eigen::Vector4d::Zero();     ///< the share that is visible, and its first moments about the
-                                                         ///< patch's centroid, metres
+                                                         ///< patch's centroid, meters
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of these
   double rays = 0;
   Spectrum colour = {};  ///< times which each band of the mean arrives; empty: 1
@@ -44,7 +44,10 @@ struct RayCounts {
   std::uint32_t each = 0;
 };
 
-/// At least two replicates, so that they have a scatter, and at most eight.
+/// The most replicates of rays from a sensor.
+inline constexpr std::uint32_t most_replicates = 8;
+
+/// At least two replicates, so that they have a scatter.
 RayCounts ray_counts(double rays);
 
 /// Shadow rays from sensors to patches.

@@ -6,8 +6,8 @@
 namespace patchlight {
 namespace {
 
-// What one surface lets through, 1 - r, of light polarised across the plane of incidence and in it: Fresnel's equations
-// with Snell's law, cosine' being that inside.
+// The transmittance 1 - r of one surface for light polarized across the plane of incidence and in it: Fresnel's
+// equations with Snell's law.
 std::array<double, 2> through_surface(double index, double cosine, double cosine_inside) {
   if (index == 1) return {1, 1};
   const double across = cosine + index * cosine_inside;
@@ -16,14 +16,14 @@ std::array<double, 2> through_surface(double index, double cosine, double cosine
   return {product / (across * across), product / (along * along)};
 }
 
-// Of one polarisation.
+// For one polarization.
 struct Shares {
   double transmitted = 0;
   double reflected = 0;
 };
 
 // The geometric series of the ways between both surfaces: T = t^2 a / (1 - r^2 a^2), R = r (1 + t^2 a^2 / (1 - r^2
-// a^2)), r = 1 - t being the reflectance of a surface and a the share that is left after one way across.
+// a^2)). A surface has the reflectance r = 1 - t, and a is the share that is left after one way across.
 Shares shares_of(double t, double a) {
   const double r = 1 - t;
   const double left = (t + r * (1 - a)) * (1 + r * a);  // 1 - r^2 a^2
@@ -32,7 +32,7 @@ Shares shares_of(double t, double a) {
   return {once, r * (1 + a * once)};
 }
 
-// The mean of both polarisations.
+// The mean of both polarizations.
 Shares unpolarised(const Pane& pane, double cosine) {
   const double sine_inside = std::sqrt(std::fmax(0, 1 - cosine * cosine)) / pane.index;
   const double cosine_inside = std::sqrt(1 - sine_inside * sine_inside);

@@ -2,9 +2,9 @@
 
 namespace patchlight {
 
-/// A thin plane-parallel pane with air on both sides, smooth and clear, for light of one band and no polarisation:
-/// what it lets straight through and what it mirrors at an angle, by Fresnel's equations for both of its surfaces, all
-/// reflections between them, and absorption on the way. The same from either side.
+/// A thin plane-parallel pane with air on both sides, smooth and clear, for unpolarized light of one band. Fresnel's
+/// equations for both of its surfaces, all reflections between them, and absorption on the way give its transmittance
+/// and reflectance at an angle. The same from either side.
 struct Pane {
   double index = 1;     ///< of refraction, at least 1; that of air, 1: a sheet with holes, the same at all angles
   double internal = 1;  ///< the share of light that is left after the way across, straight; 1: it absorbs nothing
@@ -18,7 +18,7 @@ Pane pane_of(double index, double transmittance);
 /// The share that goes straight through at an angle of incidence with this cosine, in [0, 1].
 double transmittance(const Pane& pane, double cosine);
 
-/// The share that is reflected as by a mirror. With the transmittance 1, less what is absorbed.
+/// The share that is reflected as by a mirror. With the transmittance 1, less the absorbed share.
 double specular_reflectance(const Pane& pane, double cosine);
 
 }  // namespace patchlight

@@ -2,6 +2,7 @@
 
 #include "patchlight/light/spectrum.h"
 
+#include "base/tolerances.h"
 #include "light/spectra.h"
 
 #include <algorithm>
@@ -26,9 +27,8 @@ Spectrum luminous_shares(const Bands& bands) {
   double sum = 0;
   for (std::size_t band = 0; band < bands.size(); ++band)
     sum += weights[static_cast<Eigen::Index>(band)] = bands[band].luminous_weight;
-  // Those of colours sum up to 1 as they are, up to rounding.
-  constexpr double rounding = 1e-9;
-  return std::abs(sum - 1) <= rounding || !(sum > 0) ? weights : Spectrum(weights / sum);
+  // The weights of colors sum up to 1 as they are, up to rounding.
+  return std::abs(sum - 1) <= tolerance_of_shapes || !(sum > 0) ? weights : Spectrum(weights / sum);
 }
 
 double luminance(const Spectrum& radiance) { return luminance(radiance, usual_bands(radiance.size())); }
@@ -68,7 +68,7 @@ const std::vector<Eigen::Vector2d>& planckian_locus() {
 double degrees_of(double radians) { return radians * 180 / std::numbers::pi; }
 double radians_of(double degrees) { return degrees * std::numbers::pi / 180; }
 
-// The hue angle in degrees, 0 to 360; 0 of a grey.
+// The hue angle in degrees, 0 to 360; 0 of a gray.
 double hue_of(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double hue = degrees_of(std::atan2(b, a));
@@ -110,8 +110,7 @@ std::optional<double> correlated_colour_temperature(const Eigen::Vector3d& xyz) 
   for (int k = 1; k <= steps; ++k) {
     if (distance(k) < distance(nearest)) nearest = k;
   }
-  constexpr double farthest = 0.05;
-  if (nearest == 0 || nearest == steps || distance(nearest) > farthest * farthest) return std::nullopt;
+  if (nearest == 0 || nearest == steps || distance(nearest) > 0.05 * 0.05) return std::nullopt;
   // The least of the parabola through the squares of three distances.
   const double before = distance(nearest - 1), after = distance(nearest + 1);
   const double curvature = before - 2 * distance(nearest) + after;
@@ -148,7 +147,7 @@ Lab lab_of(const Eigen::Vector3d& xyz, const Eigen::Vector3d& white) {
 }
 
 double colour_difference(const Lab& a, const Lab& b) {
-  // Chroma and hue with a* stretched for greys.
+  // Chroma and hue with a* stretched for grays.
   const double stretch = 1 + 0.5 * (1 - seventh_share((std::hypot(a[1], a[2]) + std::hypot(b[1], b[2])) / 2));
   const double chroma_a = std::hypot(stretch * a[1], a[2]), chroma_b = std::hypot(stretch * b[1], b[2]);
   const double hue_a = hue_of(stretch * a[1], a[2]), hue_b = hue_of(stretch * b[1], b[2]);

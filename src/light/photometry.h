@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance). Of bands of wavelengths the
-/// luminous weights are such that times it they give 683 lm/W at the peak of V(lambda).
+/// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance). The luminous weights
+/// of bands of wavelengths are such that times it they give 683 lm/W at the peak of V(lambda).
 inline constexpr double luminous_efficacy = 179.0;
 
 /// Luminance in cd/m^2 of a radiance in W/(m^2 sr): 179 lm/W times the sum of the bands by their luminous weights. The
@@ -25,12 +25,12 @@ Spectrum luminous_shares(const Bands& bands);
 /// X, Y and Z (CIE 1931) of a radiance, Y in cd/m^2 as luminance(); of an irradiance Y is in lx.
 Eigen::Vector3d xyz_of(const Spectrum& radiance, const Bands& bands);
 
-/// The correlated colour temperature in K: that of the black body whose chromaticity is nearest in the CIE 1960 diagram
+/// The correlated color temperature in K: that of the black body whose chromaticity is nearest in the CIE 1960 diagram
 /// (CIE 15:2004, 9.5). Nothing where it has no meaning: farther off than 0.05, below 1,000 K, above 50,000 K, or no
 /// light.
 std::optional<double> correlated_colour_temperature(const Eigen::Vector3d& xyz);
 
-/// True when bands are of wavelengths, so that colours beyond linear RGB are known.
+/// True when bands are of wavelengths, so that colors beyond linear RGB are known.
 bool are_of_wavelengths(const Bands& bands);
 
 /// xyz_of() each row.
@@ -39,13 +39,13 @@ Field xyz_rows(const FieldView& radiance, const Bands& bands);
 /// correlated_colour_temperature() of each row of X, Y and Z; not a number where it has no meaning.
 Eigen::VectorXd colour_temperatures(const FieldView& xyz);
 
-/// A colour in CIE 1976 L*, a*, b*.
+/// A color in CIE 1976 L*, a*, b*.
 using Lab = Eigen::Vector3d;
 
 /// X, Y, Z seen beside this white (CIE 15:2004, eqs. 8.3 to 8.11).
 Lab lab_of(const Eigen::Vector3d& xyz, const Eigen::Vector3d& white);
 
-/// The colour difference CIEDE2000, all parametric factors 1: Sharma, Wu and Dalal 2005, eqs. 2 to 22.
+/// The color difference CIEDE2000, all parametric factors 1: Sharma, Wu and Dalal 2005, eqs. 2 to 22.
 double colour_difference(const Lab& a, const Lab& b);
 
 }  // namespace patchlight

@@ -13,34 +13,10 @@ namespace {
 
 // Values from 380 to 780 nm by 5 nm, and by 10 nm.
 using Knots = std::array<double, 81>;
+using TenNanometers = std::array<double, 41>;
 
-using TenNanometres = std::array<double, 41>;
-
-// The colour matching functions of the CIE 1931 observer (2 degrees).
-extern const Knots observer_x;
-
-extern const Knots observer_y;
-
-extern const Knots observer_z;
-
-// CIE standard illuminant D65, relative power.
-extern const Knots illuminant_d65;
-
-// The mean of daylight, S_0, and what it varies by, S_1 and S_2: CIE 15:2004, 3.1.
-extern const TenNanometres daylight_0;
-
-extern const TenNanometres daylight_1;
-
-extern const TenNanometres daylight_2;
-
-// Reflectances that sum up to 1 and under D65 have the colours red, green and blue of 1 (Rec. 709).
-extern const Knots reflectance_red;
-
-extern const Knots reflectance_green;
-
-extern const Knots reflectance_blue;
-
-// CIE 1931 2 degree observer, x; from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b).
+// Color matching functions of the CIE 1931 observer (2 degrees) and relative power of the CIE standard illuminant D65,
+// from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b).
 const Knots observer_x = {{0.001368, 0.002236, 0.004243, 0.00765,  0.01431,  0.02319,  0.04351,  0.07763,  0.13438,
                            0.21477,  0.2839,   0.3285,   0.34828,  0.34806,  0.3362,   0.3187,   0.2908,   0.2511,
                            0.19536,  0.1421,   0.09564,  0.05795,  0.03201,  0.0147,   0.0049,   0.0024,   0.0093,
@@ -51,7 +27,6 @@ const Knots observer_x = {{0.001368, 0.002236, 0.004243, 0.00765,  0.01431,  0.0
                            0.01584,  0.011359, 0.008111, 0.00579,  0.004109, 0.002899, 0.002049, 0.00144,  0.001,
                            0.00069,  0.000476, 0.000332, 0.000235, 0.000166, 0.000117, 0.000083, 0.000059, 0.000042}};
 
-// CIE 1931 2 degree observer, y; from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b).
 const Knots observer_y = {{0.000039, 0.000064, 0.00012,  0.000217, 0.000396, 0.00064,  0.00121, 0.00218,  0.004,
                            0.0073,   0.0116,   0.01684,  0.023,    0.0298,   0.038,    0.048,   0.06,     0.0739,
                            0.09098,  0.1126,   0.13902,  0.1693,   0.20802,  0.2586,   0.323,   0.4073,   0.503,
@@ -62,7 +37,6 @@ const Knots observer_y = {{0.000039, 0.000064, 0.00012,  0.000217, 0.000396, 0.0
                            0.005723, 0.004102, 0.002929, 0.002091, 0.001484, 0.001047, 0.00074, 0.00052,  0.000361,
                            0.000249, 0.000172, 0.00012,  0.000085, 0.00006,  0.000042, 0.00003, 0.000021, 0.000015}};
 
-// CIE 1931 2 degree observer, z; from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b).
 const Knots observer_z = {
     {0.00645, 0.01055, 0.02005, 0.03621, 0.06785, 0.1102,  0.2074,  0.3713,  0.6456,  1.03905, 1.3856,  1.62296,
      1.74706, 1.7826,  1.77211, 1.7441,  1.6692,  1.5281,  1.28764, 1.0419,  0.81295, 0.6162,  0.46518, 0.3533,
@@ -72,7 +46,6 @@ const Knots observer_z = {
      0,       0,       0,       0,       0,       0,       0,       0,       0,       0,       0,       0,
      0,       0,       0,       0,       0,       0,       0,       0,       0}};
 
-// CIE standard illuminant D65; from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b).
 const Knots illuminant_d65 = {
     {49.9755, 52.3118, 54.6482, 68.7015, 82.7549, 87.1204, 91.486,  92.4589, 93.4318, 90.057,  86.6823, 95.7736,
      104.865, 110.936, 117.008, 117.41,  117.812, 116.336, 114.861, 115.392, 115.923, 112.367, 108.811, 109.082,
@@ -82,278 +55,52 @@ const Knots illuminant_d65 = {
      78.2842, 74.0027, 69.7213, 70.6652, 71.6091, 72.979,  74.349,  67.9765, 61.604,  65.7448, 69.8856, 72.4863,
      75.087,  69.3398, 63.5927, 55.0054, 46.4182, 56.6118, 66.8054, 65.0941, 63.3828}};
 
-// CIE 15:2004, table T.2.
-const TenNanometres daylight_0 = {{63.4,  65.8,  94.8,  104.8, 105.9, 96.8,  113.9, 125.6, 125.5, 121.3, 121.3,
+// The mean of daylight, S_0, and its variations S_1 and S_2: CIE 15:2004, table T.2.
+const TenNanometers daylight_0 = {{63.4,  65.8,  94.8,  104.8, 105.9, 96.8,  113.9, 125.6, 125.5, 121.3, 121.3,
                                    113.5, 113.1, 110.8, 106.5, 108.8, 105.3, 104.4, 100,   96,    95.1,  89.1,
                                    90.5,  90.3,  88.4,  84,    85.1,  81.9,  82.6,  84.9,  81.3,  71.9,  74.3,
                                    76.4,  63.3,  71.7,  77,    65.2,  47.7,  68.6,  65}};
 
-// CIE 15:2004, table T.2.
-const TenNanometres daylight_1 = {{38.5,  35,    43.4,  46.3,  43.9,  37.1,  36.7,  35.9, 32.6,  27.9, 24.3,
+const TenNanometers daylight_1 = {{38.5,  35,    43.4,  46.3,  43.9,  37.1,  36.7,  35.9, 32.6,  27.9, 24.3,
                                    20.1,  16.2,  13.2,  8.6,   6.1,   4.2,   1.9,   0,    -1.6,  -3.5, -3.5,
                                    -5.8,  -7.2,  -8.6,  -9.5,  -10.9, -10.7, -12,   -14,  -13.6, -12,  -13.3,
                                    -12.9, -10.6, -11.6, -12.2, -10.2, -7.8,  -11.2, -10.4}};
 
-// CIE 15:2004, table T.2.
-const TenNanometres daylight_2 = {{3,    1.2, -1.1, -0.5, -0.7, -1.2, -2.6, -2.9, -2.8, -2.6, -2.6, -1.8, -1.5, -1.3,
+const TenNanometers daylight_2 = {{3,    1.2, -1.1, -0.5, -0.7, -1.2, -2.6, -2.9, -2.8, -2.6, -2.6, -1.8, -1.5, -1.3,
                                    -1.2, -1,  -0.5, -0.3, 0,    0.2,  0.5,  2.1,  3.2,  4.1,  4.7,  5.1,  6.7,  7.3,
                                    8.6,  9.8, 10.2, 8.3,  9.6,  8.5,  7,    7.6,  8,    6.7,  5.2,  7.4,  6.8}};
 
-// Mallett and Yuksel 2019, computed for D65.
-const Knots reflectance_red = {{0.026670057265,
-                                0.026668537675,
-                                0.026662402067,
-                                0.026647029228,
-                                0.026611236842,
-                                0.026533297825,
-                                0.026381071457,
-                                0.02609312485,
-                                0.0255731221,
-                                0.024701121515,
-                                0.023417275087,
-                                0.021826631386,
-                                0.020266995381,
-                                0.019387127753,
-                                0.020167155643,
-                                0.023947233243,
-                                0.028878212288,
-                                0.023273492068,
-                                0.012323002474,
-                                0.002326453401,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0,
-                                0.03274916532,
-                                0.107924166392,
-                                0.214366915485,
-                                0.340605927095,
-                                0.475222680628,
-                                0.607983546499,
-                                0.730039083193,
-                                0.834150084188,
-                                0.914963473006,
-                                0.969254083695,
-                                0.997109378108,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1,
-                                1}};
+// Reflectances that under D65 have the colors red and green of 1 (Rec. 709): Mallett and Yuksel 2019. That of blue is
+// the rest of 1.
+const Knots reflectance_red = {
+    {0.026670057265, 0.026668537675, 0.026662402067, 0.026647029228, 0.026611236842, 0.026533297825, 0.026381071457,
+     0.02609312485,  0.0255731221,   0.024701121515, 0.023417275087, 0.021826631386, 0.020266995381, 0.019387127753,
+     0.020167155643, 0.023947233243, 0.028878212288, 0.023273492068, 0.012323002474, 0.002326453401, 0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.03274916532,  0.107924166392, 0.214366915485, 0.340605927095,
+     0.475222680628, 0.607983546499, 0.730039083193, 0.834150084188, 0.914963473006, 0.969254083695, 0.997109378108,
+     1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,
+     1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,
+     1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,
+     1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,
+     1.00000,        1.00000,        1.00000,        1.00000}};
 
-// Mallett and Yuksel 2019, computed for D65.
-const Knots reflectance_green = {{0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0.006906820183,
-                                  0.047736388605,
-                                  0.115843846621,
-                                  0.202512278197,
-                                  0.29869834792,
-                                  0.401628554431,
-                                  0.50748518878,
-                                  0.612051907393,
-                                  0.711515978166,
-                                  0.802112427588,
-                                  0.879950040181,
-                                  0.941134538091,
-                                  0.982104418944,
-                                  1,
-                                  1,
-                                  1,
-                                  1,
-                                  1,
-                                  1,
-                                  1,
-                                  0.997631725339,
-                                  0.977520116447,
-                                  0.926481002264,
-                                  0.843070369565,
-                                  0.736318367104,
-                                  0.615486670433,
-                                  0.489730185407,
-                                  0.367231076865,
-                                  0.25509095325,
-                                  0.159098728529,
-                                  0.083487548805,
-                                  0.030745916305,
-                                  0.002890621892,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0}};
-
-// Mallett and Yuksel 2019, computed for D65.
-const Knots reflectance_blue = {{0.973329942735,
-                                 0.973331462325,
-                                 0.973337597933,
-                                 0.973352970772,
-                                 0.973388763158,
-                                 0.973466702175,
-                                 0.973618928543,
-                                 0.97390687515,
-                                 0.9744268779,
-                                 0.975298878485,
-                                 0.976582724913,
-                                 0.978173368614,
-                                 0.979733004619,
-                                 0.980612872247,
-                                 0.979832844357,
-                                 0.976052766757,
-                                 0.964214967529,
-                                 0.928990119328,
-                                 0.871833150905,
-                                 0.795161268402,
-                                 0.70130165208,
-                                 0.598371445569,
-                                 0.49251481122,
-                                 0.387948092607,
-                                 0.288484021834,
-                                 0.197887572412,
-                                 0.120049959819,
-                                 0.058865461909,
-                                 0.017895581056,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0.002368274661,
-                                 0.022479883553,
-                                 0.040769832415,
-                                 0.049005464043,
-                                 0.049314717411,
-                                 0.043907402472,
-                                 0.035047133965,
-                                 0.024785376635,
-                                 0.014869963558,
-                                 0.006751187283,
-                                 0.00154897819,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0,
-                                 0}};
-
-constexpr double knot_width = 5;  // nm, of Knots
+const Knots reflectance_green = {
+    {0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.006906820183, 0.047736388605, 0.115843846621, 0.202512278197, 0.29869834792,
+     0.401628554431, 0.50748518878,  0.612051907393, 0.711515978166, 0.802112427588, 0.879950040181, 0.941134538091,
+     0.982104418944, 1.00000,        1.00000,        1.00000,        1.00000,        1.00000,        1.00000,
+     1.00000,        0.997631725339, 0.977520116447, 0.926481002264, 0.843070369565, 0.736318367104, 0.615486670433,
+     0.489730185407, 0.367231076865, 0.25509095325,  0.159098728529, 0.083487548805, 0.030745916305, 0.002890621892,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,        0.00000,
+     0.00000,        0.00000,        0.00000,        0.00000}};
 
 double middle_of(Eigen::Index cell) { return shortest_wavelength + 0.5 + static_cast<double>(cell); }
-
-// lm/W at the peak of V(lambda): the definition of the candela, rounded as in CIE S 010.
-constexpr double peak_efficacy = 683;
 
 template <std::size_t size>
 SampledSpectrum at_even_steps(std::string name, const std::array<double, size>& values) {
@@ -383,11 +130,11 @@ double relative_planck(double wavelength, double second) {
 
 Cells knots_in_cells(const Knots& knots) { return in_cells(at_even_steps({}, knots), Beyond::end); }
 
-// By polynomials through four knots: CIE 15:2004, 7.2.1.
+// Polynomials through four knots: CIE 15:2004, 7.2.1.
 Cells observer_knots_in_cells(const Knots& knots) {
   Cells cells;
   for (Eigen::Index cell = 0; cell < number_of_cells; ++cell) {
-    const double place = (middle_of(cell) - shortest_wavelength) / knot_width;
+    const double place = (middle_of(cell) - shortest_wavelength) / 5;
     const auto first =
         static_cast<std::size_t>(std::clamp(std::floor(place) - 1, 0.0, static_cast<double>(knots.size() - 4)));
     const double t = place - static_cast<double>(first);
@@ -433,9 +180,8 @@ Cells in_cells(const SampledSpectrum& spectrum, Beyond beyond) {
 const Eigen::Array<double, 3, number_of_cells>& observer_in_cells() {
   static const Eigen::Array<double, 3, number_of_cells> observer = [] {
     Eigen::Array<double, 3, number_of_cells> rows;
-    rows.row(0) = observer_knots_in_cells(observer_x).transpose();
-    rows.row(1) = observer_knots_in_cells(observer_y).transpose();
-    rows.row(2) = observer_knots_in_cells(observer_z).transpose();
+    rows << observer_knots_in_cells(observer_x).transpose(), observer_knots_in_cells(observer_y).transpose(),
+        observer_knots_in_cells(observer_z).transpose();
     return rows;
   }();
   return observer;
@@ -446,13 +192,12 @@ std::shared_ptr<const SampledSpectrum> illuminant_d65_spectrum() {
 }
 
 std::shared_ptr<const SampledSpectrum> illuminant_a_spectrum() {
-  constexpr double second = 1.435e7 / 2848;  // nm
-  return of_formula("A", [](double wavelength) { return 100 * relative_planck(wavelength, second); });
+  return of_formula("A", [](double wavelength) { return 100 * relative_planck(wavelength, 1.435e7 / 2848); });
 }
 
 std::shared_ptr<const SampledSpectrum> planckian_spectrum(double kelvin) {
-  constexpr double second = 1.438776877e7;  // h c / k, nm K
-  return of_formula("black body", [kelvin](double wavelength) { return relative_planck(wavelength, second / kelvin); });
+  const double second = 1.438776877e7 / kelvin;  // h c / (k T), nm
+  return of_formula("black body", [second](double wavelength) { return relative_planck(wavelength, second); });
 }
 
 std::shared_ptr<const SampledSpectrum> daylight_spectrum(double kelvin) {
@@ -465,7 +210,7 @@ std::shared_ptr<const SampledSpectrum> daylight_spectrum(double kelvin) {
   const double divisor = 0.0241 + 0.2562 * x - 0.7341 * y;
   const double m_1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / divisor;
   const double m_2 = (0.0300 - 31.4424 * x + 30.0717 * y) / divisor;
-  TenNanometres values{};
+  TenNanometers values{};
   // The far ends of the hottest daylight are above 0 all the same.
   for (std::size_t k = 0; k < values.size(); ++k)
     values[k] = std::max(0.0, daylight_0[k] + m_1 * daylight_1[k] + m_2 * daylight_2[k]);
@@ -481,7 +226,8 @@ const std::array<Cells, 3>& reflectances_of_primaries() {
   return primaries;
 }
 
-Eigen::Vector3d xyz_per_watt(const Eigen::Vector3d& observer) { return peak_efficacy * observer; }
+// 683 lm/W at the peak of V(lambda): the definition of the candela, rounded as in CIE S 010.
+Eigen::Vector3d xyz_per_watt(const Eigen::Vector3d& observer) { return 683 * observer; }
 
 Eigen::Vector3d xyz_of_cells(const Cells& light) { return xyz_per_watt(observer_in_cells().matrix() * light.matrix()); }
 

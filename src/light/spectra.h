@@ -17,16 +17,16 @@ inline constexpr Eigen::Index number_of_cells = 400;
 /// A value for the middle of each cell.
 using Cells = Eigen::Array<double, number_of_cells, 1>;
 
-/// What holds beyond the wavelengths of a table.
+/// How a table continues beyond its wavelengths.
 enum class Beyond : std::uint8_t {
-  zero,  ///< as of lamps
-  end    ///< the value at the end, as of reflectances
+  zero,  ///< for lamps
+  end    ///< the value at the end, for reflectances
 };
 
 /// A spectrum at the middles of the cells.
 Cells in_cells(const SampledSpectrum& spectrum, Beyond beyond);
 
-/// The colour matching functions x, y and z of the CIE 1931 observer, a row for each.
+/// The color matching functions x, y and z of the CIE 1931 observer, a row for each.
 const Eigen::Array<double, 3, number_of_cells>& observer_in_cells();
 
 /// CIE standard illuminants, any multiple: D65, and A by its formula (CIE S 014-2:2006, eq. 1).
@@ -40,11 +40,11 @@ std::shared_ptr<const SampledSpectrum> planckian_spectrum(double kelvin);
 inline constexpr double coolest_daylight = 4000;
 inline constexpr double hottest_daylight = 25000;
 
-/// Daylight of a correlated colour temperature within these, any multiple: CIE 15:2004, 3.1.
+/// Daylight of a correlated color temperature within these, any multiple: CIE 15:2004, 3.1.
 std::shared_ptr<const SampledSpectrum> daylight_spectrum(double kelvin);
 
-/// The reflectances whose sum, times the linear RGB (Rec. 709) of a colour, is a smooth spectrum that has this colour
-/// under D65, in [0, 1] where the colour is: Mallett and Yuksel 2019. In each cell they sum up to 1.
+/// The reflectances whose sum, times the linear RGB (Rec. 709) of a color, is a smooth spectrum that has this color
+/// under D65, in [0, 1] where the color is: Mallett and Yuksel 2019. In each cell they sum up to 1.
 const std::array<Cells, 3>& reflectances_of_primaries();
 
 /// X, Y and Z of 1 W of light for which the observer has these values.

@@ -1,5 +1,7 @@
 #include "light/texture.h"
 
+#include "base/tolerances.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +19,14 @@ std::size_t wrapped(double place, std::uint32_t count, Wrap wrap) {
 }
 
 Rgb colour_of(const std::array<float, 3>& texel) { return {texel[0], texel[1], texel[2]}; }
+
+// At a place in texels.
+Rgb colour_at(const TexturedReflectance& textured, double x, double y) {
+  const Texture& texture = *textured.texture;
+  const std::size_t column = wrapped(x, texture.width, textured.wrap[0]);
+  const std::size_t row = wrapped(y, texture.height, textured.wrap[1]);
+  return colour_of(texture.texels[row * texture.width + column]);
+}
 
 Rgb sum_of(const Rgb& a, const Rgb& b, double times) {
   return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
@@ -49,9 +59,7 @@ Spectrum reflectance_of(const TexturedReflectance& textured, const Rgb& colour) 
 
 Spectrum reflectance_at(const TexturedReflectance& textured, const Eigen::Vector2d& place) {
   const Texture& texture = *textured.texture;
-  const std::size_t column = wrapped(place.x() * texture.width, texture.width, textured.wrap[0]);
-  const std::size_t row = wrapped(place.y() * texture.height, texture.height, textured.wrap[1]);
-  return reflectance_of(textured, colour_of(texture.texels[row * texture.width + column]));
+  return reflectance_of(textured, colour_at(textured, place.x() * texture.width, place.y() * texture.height));
 }
 
 Rgb mean_colour(const Texture& texture) {
@@ -62,9 +70,8 @@ Rgb mean_colour(const Texture& texture) {
 }
 
 bool reflects_more_than_all(const TexturedReflectance& textured) {
-  constexpr double most = 1 + 1e-6;
   const auto is_more = [&](const std::array<float, 3>& texel) {
-    return (reflectance_of(textured, colour_of(texel)) > most).any();
+    return (reflectance_of(textured, colour_of(texel)) > 1 + tolerance_of_coordinates).any();
   };
   const auto& texels = textured.texture->texels;
   // The highest red, green and blue together reflect no less than any texel, and mostly that is little enough.
@@ -101,7 +108,7 @@ TextureMeans::TextureMeans(const TexturedReflectance& textured)
   }
 }
 
-// The integral of the colour along a row, from its edge to x texels.
+// The integral of the color along a row, from its edge to x texels.
 Rgb TextureMeans::sum_to(double x, std::size_t row) const {
   const Texture& texture = *textured_.texture;
   const double width = texture.width;
@@ -124,7 +131,7 @@ Rgb TextureMeans::sum_to(double x, std::size_t row) const {
   return sum_of(sum_of({}, whole, 2 * times + 2), within(2 * width - rest), -1);
 }
 
-// The integral over y, from one end of an edge to the other, of that of the colour along x from `base`. Between lines
+// The integral over y, from one end of an edge to the other, of that of the color along x from `base`. Between lines
 // of texels the latter is linear in x, so its value in the middle is exact.
 Rgb TextureMeans::outline_integral(const Eigen::Vector2d& begin, const Eigen::Vector2d& to, double base) const {
   Rgb sum{};
@@ -152,10 +159,9 @@ Rgb TextureMeans::outline_integral(const Eigen::Vector2d& begin, const Eigen::Ve
   return sum;
 }
 
-// By Green's theorem: over a polygon, the integral of f dx dy is that of F dy around it, dF/dx = f.
+// Green's theorem: over a polygon, the integral of f dx dy is that of F dy around it, dF/dx = f.
 Rgb TextureMeans::over(std::span<const Eigen::Vector2d> corners) const {
   const Texture& texture = *textured_.texture;
-  constexpr double most_around = 1e6;
   std::vector<Eigen::Vector2d> in_texels;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& corner : corners) {
@@ -163,13 +169,10 @@ Rgb TextureMeans::over(std::span<const Eigen::Vector2d> corners) const {
     middle += in_texels.back() / static_cast<double>(corners.size());
   }
   const double around = length_around(in_texels);
-  if (!(around <= most_around) || !(middle.lpNorm<1>() <= 1e12)) return mean_;
+  if (!(around <= 1e6) || !(middle.lpNorm<1>() <= 1e12)) return mean_;
   const double area = twice_the_area(in_texels) / 2;
-  if (std::abs(area) <= 1e-12 * around * around || around < 1e-6) {
-    const std::size_t column = wrapped(middle.x(), texture.width, textured_.wrap[0]);
-    const std::size_t row = wrapped(middle.y(), texture.height, textured_.wrap[1]);
-    return colour_of(texture.texels[row * texture.width + column]);
-  }
+  if (std::abs(area) <= tolerance_of_arithmetic * around * around || around < tolerance_of_coordinates)
+    return colour_at(textured_, middle.x(), middle.y());
   double base = in_texels[0].x();
   for (const Eigen::Vector2d& corner : in_texels) base = std::min(base, std::floor(corner.x()));
   Rgb integral{};

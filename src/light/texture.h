@@ -12,7 +12,7 @@ namespace patchlight {
 /// Linear red, green and blue.
 using Rgb = std::array<double, 3>;
 
-/// The reflectance where a picture has this colour.
+/// The reflectance where a picture has this color.
 Spectrum reflectance_of(const TexturedReflectance& textured, const Rgb& colour);
 
 /// The reflectance at a place of the picture, (u, v): that of the texel there.
@@ -24,7 +24,7 @@ Rgb mean_colour(const Texture& texture);
 /// True where a texel reflects more than 1 in a band, by more than rounding.
 bool reflects_more_than_all(const TexturedReflectance& textured);
 
-/// What can be said of all texels of a picture.
+/// The extremes and the spread over all texels of a picture.
 struct TextureRange {
   double highest_reflectance = 0;  ///< worst band
   bool grey = true;                ///< the reflectance is the same in all bands, everywhere
@@ -33,13 +33,13 @@ struct TextureRange {
 
 TextureRange range_of(const TexturedReflectance& textured);
 
-/// Means of a picture over polygons. Texels have one colour each: means are exact.
+/// Means of a picture over polygons. Texels have one color each: means are exact.
 class TextureMeans {
  public:
   /// O(texels) of time; three times the memory of the picture.
   explicit TextureMeans(const TexturedReflectance& textured);
 
-  /// The mean colour over a simple polygon in the picture's coordinates, its corners in either sense. That at its
+  /// The mean color over a simple polygon in the picture's coordinates, its corners in either sense. That at its
   /// middle where it has no area, and that of the whole picture where it is more than a million texels around. O(texels
   /// that its outline crosses).
   Rgb over(std::span<const Eigen::Vector2d> corners) const;

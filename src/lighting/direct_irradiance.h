@@ -34,9 +34,8 @@ struct DirectIrradiance {
   Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
                          ///< eight; as large as the irradiance where there is one sample alone; 0 where nothing is
                          ///< sampled. Where n rays to a light without extent, or from a point
-                         ///< to a ball, all find the same: 3 / n of what it gives without shadows. What all rays of a
-                         ///< patch to a ball or to the sky miss, a hole that is smaller than one ray's share of these,
-                         ///< is not known
+                         ///< to a ball, all find the same: 3 / n of its light without shadows. It leaves out holes
+                         ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
 };
 
 /// More light on the same patches or points, whose errors have nothing to do with each other.
@@ -45,7 +44,7 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more);
 /// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
 /// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
 /// the patch. The share of a patch that these or the sun reach is exact up to rounding, from the outlines of all
-/// shadows, unless some 1,500 triangles stand between: however small a hole is, it is found. O(patches x (luminaires x
+/// shadows, unless about 1,500 triangles stand between: however small a hole is, it is found. O(patches x (luminaires x
 /// lamp_samples + sun_samples + sky_samples)). \throws Cancelled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});

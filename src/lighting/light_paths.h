@@ -1,11 +1,13 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/scene/scene.h"
 
-#include "lighting/pane_sides.h"
+#include "light/pane.h"
 #include "visibility/occluder.h"
 #include "visibility/tracing.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,10 +15,45 @@
 
 namespace patchlight {
 
+/// The shares of light, per band, that clear polygons transmit straight and that these and mirrors reflect without
+/// scattering, by the material of the side that the light meets.
+class PaneSides {
+ public:
+  explicit PaneSides(const Scene& scene);
+
+  Eigen::Index bands() const { return bands_; }
+
+  /// False when no light goes through a polygon from either side.
+  bool is_clear(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_clear; }
+
+  /// The share that a clear polygon lets through of the light that one sees in a unit direction.
+  Spectrum transmittance(PolygonIndex polygon, const Vector& direction) const;
+
+  /// False when a polygon reflects no light as a mirror does.
+  bool is_specular(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_specular; }
+
+  /// The share that is_specular() ones reflect so of the light that one sees in a unit direction, which meets the side.
+  Spectrum specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
+
+ private:
+  struct Sides {
+    Vector normal = Vector::Zero();  // of the front
+    std::array<MaterialIndex, 2> materials{};
+    bool is_clear = false;
+    bool is_specular = false;
+  };
+  MaterialIndex material_met(const Sides& sides, const Vector& direction) const;
+
+  Eigen::Index bands_;
+  std::vector<std::vector<Pane>> panes_;  // per material and band; none of an opaque one
+  std::vector<Spectrum> mirrors_;         // per material: its specular reflectance; empty: none
+  std::vector<Sides> sides_;              // per polygon; none where none is clear or a mirror
+};
+
 /// A clear opening that a ray crosses.
 struct Crossing {
   PolygonIndex polygon = no_polygon;
-  double distance = 0;  ///< metres from the ray's origin
+  double distance = 0;  ///< meters from the ray's origin
 };
 
 /// The clear openings on the way of a ray. Empty where something opaque blocks it.
@@ -41,7 +78,7 @@ class LightPaths {
   /// 1 for each segment that meets something opaque, else 0.
   std::vector<std::uint8_t> meets_opaque(std::span<const Segment> segments) const;
 
-  /// What opaque polygons each ray meets first; clear ones let it pass.
+  /// The first opaque polygon that each ray meets; clear ones let it pass.
   std::vector<std::optional<Hit>> first_opaque_hits(std::span<const Ray> rays) const;
 
   /// A point so far from another in a unit direction that all of the scene is nearer.
@@ -63,7 +100,6 @@ class LightPaths {
   std::shared_ptr<const Occluder> opaque_;
   std::shared_ptr<const Occluder> clear_;  // null where there are no openings
   PaneSides panes_;
-  Eigen::Index bands_;
 };
 
 }  // namespace patchlight

@@ -1,9 +1,9 @@
 #include "lighting/lighting.h"
 
-#include "base/sampling.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/shades.h"
 #include "scene/photometric_web.h"
+#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +12,14 @@
 namespace patchlight {
 namespace {
 
-constexpr double degrees_per_radian = 180 / std::numbers::pi;
-
-// Relative intensity and colour of lamps without extent.
+// Relative intensity and color of lamps without extent.
 double relative_intensity(const PointLight&, const Luminaire&, const Vector&, const Vector&) { return 1; }
 double relative_intensity(const SpotLight& spot, const Luminaire& luminaire, const Vector& direction, const Vector&) {
   return spot_profile(spot, luminaire.aim.dot(direction));
 }
 double relative_intensity(const WebLight& light, const Luminaire& luminaire, const Vector& direction,
                           const Vector& up) {
-  const double tilt = std::acos(std::clamp(-luminaire.aim.dot(up), -1.0, 1.0)) * degrees_per_radian;
+  const double tilt = std::acos(std::clamp(-luminaire.aim.dot(up), -1.0, 1.0)) * (180 / std::numbers::pi);
   return tilt_factor(*light.web, tilt) * candela(*light.web, {luminaire.aim, luminaire.zero_plane}, direction);
 }
 const Spectrum& colour_of(const PointLight& light) { return light.intensity; }
@@ -39,16 +37,6 @@ Arrival from_light(const Light& light, const Luminaire& luminaire, const Vector&
   return {luminaire.position, intensity * cosine / square, &colour_of(light)};
 }
 
-// Two unit vectors at right angles to a third and to each other.
-struct Across {
-  Vector first;
-  Vector second;
-};
-Across across(const Vector& axis) {
-  const Vector first = axis.unitOrthogonal();
-  return {first, axis.cross(first)};
-}
-
 Arrival from_sphere(const SphericalLamp& lamp, const Point& centre, const SurfacePoint& at, const Eigen::Vector2d& uv) {
   const Vector way = centre - at.point;
   const double distance = way.norm();
@@ -59,9 +47,9 @@ Arrival from_sphere(const SphericalLamp& lamp, const Point& centre, const Surfac
   const double cosine = 1 - uv.x() * lift;
   const double turn = 2 * std::numbers::pi * uv.y();
   const Vector axis = way / distance;
-  const Across frame = across(axis);
+  const Vector across = axis.unitOrthogonal();
   const Vector direction = cosine * axis + std::sqrt(std::max(0.0, 1 - cosine * cosine)) *
-                                               (std::cos(turn) * frame.first + std::sin(turn) * frame.second);
+                                               (std::cos(turn) * across + std::sin(turn) * axis.cross(across));
   const double received = at.normal.dot(direction);
   if (!(received > 0)) return {};
   // Nearer than the sphere's middle by the half chord.
@@ -108,6 +96,21 @@ Arrival from_sun(const Lighting& lighting, const SurfacePoint& at) {
   const double cosine = at.normal.dot(lighting.sun->direction);
   if (!(cosine > 0)) return {};
   return {lighting.paths.beyond(at.point, lighting.sun->direction), cosine, &lighting.sun->normal_irradiance};
+}
+
+std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side side) {
+  const std::vector<Point> corners = corner_points(scene, polygon);
+  const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
+  const Vector normal = (side == Side::front ? 1 : -1) * front_normal(scene, polygon);
+  std::vector<LampFace> faces;
+  if (corners.size() == 4 && is_convex(corners)) {
+    faces.push_back(
+        {{corners[0], corners[1], corners[2], corners[3]}, normal, area_vector(corners).norm(), polygon, exitance});
+    return faces;
+  }
+  for (const auto& [a, b, c] : triangles_of(corners))
+    faces.push_back({{a, b, c, c}, normal, (b - a).cross(c - a).norm() / 2, polygon, exitance});
+  return faces;
 }
 
 }  // namespace patchlight

@@ -6,6 +6,7 @@
 #include "lighting/sky.h"
 #include "lighting/sky_openings.h"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,8 +16,8 @@ namespace patchlight {
 class Shades;
 struct Mirrors;
 
-/// What gives light in a scene and is no patch, ready for direct_irradiance(). Immutable and safe to use from several
-/// threads.
+/// The sources of light in a scene that are no patches, ready for direct_irradiance(). Immutable and safe to use from
+/// several threads.
 struct Lighting {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;  ///< nothing while it is below the horizon
@@ -29,13 +30,13 @@ struct Lighting {
   std::shared_ptr<const Mirrors> mirrors;  ///< null where there are none, or reflections are not followed
 };
 
-/// Of a scene that check() has passed. Places over which another polygon lies get no light.
+/// The scene must have passed check(). Places over which another polygon lies get no light.
 Lighting lighting_of(const Scene& scene, const Tracing& tracing);
 
 /// Light that arrives at a point from one direction.
 struct Arrival {
   Point from;                        ///< a point of the source, or one beyond the scene
-  double irradiance = 0;             ///< of the point if nothing is in the way, for a colour of 1; 0: none
+  double irradiance = 0;             ///< of the point if nothing is in the way, for a color of 1; 0: none
   const Spectrum* colour = nullptr;  ///< of the light; lives as long as the lighting
 };
 
@@ -51,7 +52,19 @@ struct SurfacePoint {
 /// square is the irradiance.
 Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at, const Eigen::Vector2d& uv);
 
-/// What arrives from the sun, which must be there.
+/// From the sun, which must be there.
 Arrival from_sun(const Lighting& lighting, const SurfacePoint& at);
+
+/// A triangle, whose last corner comes twice, or a convex quadrilateral that emits from its front.
+struct LampFace {
+  std::array<Point, 4> corners;
+  Vector normal;  ///< unit
+  double area = 0;
+  PolygonIndex polygon = no_polygon;
+  Spectrum exitance;  ///< W/m^2
+};
+
+/// The triangles and convex quadrilaterals of a side of a polygon that emits.
+std::vector<LampFace> lamp_faces(const Scene& scene, PolygonIndex polygon, Side side);
 
 }  // namespace patchlight

@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "lighting/mirrored_sources.h"
 #include "scene/transmittance.h"
 
 #include <algorithm>
@@ -13,27 +12,31 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 
 namespace patchlight {
 namespace {
 
-constexpr std::size_t most_mirrors = 16;
+std::optional<MirroredArrival> arrived(const SurfacePoint& at, const Arrival& arrival) {
+  if (!(arrival.irradiance > 0)) return {};
+  return MirroredArrival{{at.point, arrival.from, at.polygon, no_polygon}, arrival.irradiance * *arrival.colour};
+}
+
+// E G A: one point of the lamp.
+std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const Point& y, const SurfacePoint& at,
+                                         const SurfacePoint& image) {
+  const Vector toward = y - image.point;
+  const double cosine = image.normal.dot(toward);
+  const double cosine_there = -lamp.normal.dot(toward);
+  if (!(cosine > 0 && cosine_there > 0)) return {};
+  const double geometry = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
+  return MirroredArrival{{at.point, y, at.polygon, lamp.polygon}, geometry * lamp.area * lamp.exitance};
+}
+
 constexpr std::size_t most_chains = 1024;
-constexpr double least_reflectance = 1e-3;
 
-// Beams with a smaller share of the flux of their source are not followed.
-constexpr double least_share = 1e-7;
-
-// Points of a mirror at which the irradiance by a source is evaluated, and directions of equal flux of a source: points
-// resolve small mirrors, directions resolve narrow sources.
-constexpr std::uint32_t points_of_mirror = 16;
+// Directions of equal flux of a source: they resolve narrow sources, and points of a mirror resolve small mirrors.
 constexpr int directions_of_source = 64;
-
-// Rings of directions around the axis of a source, and cells of a ring. Rings become narrower towards the axis, by this
-// factor in all.
-constexpr int rings = 40;
-constexpr int cells_of_ring = 16;
-constexpr double narrowing = 1000;
 
 // The largest reflectance over the bands; for a clear material that of light from all directions alike.
 double reflectance_of(const Material& material) {
@@ -61,14 +64,17 @@ struct DirectionCell {
   Spectrum flux;
 };
 
-// I dOmega in cells of directions, each evaluated at its middle. Light with extent is seen from afar.
+// I dOmega in cells of directions, each evaluated at its middle. Rings around the axis become narrower towards it, by a
+// factor of 1,000 in all. Light with extent is seen from afar.
 std::vector<DirectionCell> direction_cells(const MirroredSource& source) {
-  const auto& [direction, ball] = source.extent;
+  constexpr int rings = 40;
+  constexpr int cells_of_ring = 16;
+  const Ball& ball = source.extent.ball;
   const double distance = ball.radius > 0 ? 100 * ball.radius : 1;
   const Vector across = source.axis.unitOrthogonal();
   const Vector third = source.axis.cross(across);
   const auto angle_of = [](double ring) {
-    return std::numbers::pi * std::expm1(std::log(narrowing) * ring / rings) / (narrowing - 1);
+    return std::numbers::pi * std::expm1(std::log(1000.0) * ring / rings) / 999;
   };
   std::vector<DirectionCell> cells;
   for (int ring = 0; ring < rings; ++ring) {
@@ -106,9 +112,9 @@ SourceFlux flux_of(const MirroredSource& source, Eigen::Index bands) {
 // So far before a plane something has to be to count.
 double tolerance_in(const Scene& scene) { return 1e-7 * bounds(scene).diagonal().norm(); }
 
-bool has_scene_before(const Scene& scene, const MirrorSide& side, double tolerance) {
-  return std::any_of(scene.vertices.begin(), scene.vertices.end(),
-                     [&](const Point& vertex) { return side.normal.dot(vertex - side.on_plane) > tolerance; });
+bool has_corner_before(std::span<const Point> corners, const MirrorSide& mirror, double tolerance) {
+  return std::any_of(corners.begin(), corners.end(),
+                     [&](const Point& corner) { return mirror.normal.dot(corner - mirror.on_plane) > tolerance; });
 }
 
 std::vector<MirrorSide> mirror_sides(const Scene& scene) {
@@ -125,7 +131,7 @@ std::vector<MirrorSide> mirror_sides(const Scene& scene) {
       const Vector front = front_normal(scene, p);
       const MirrorSide mirror{p, side, side == Side::front ? front : Vector(-front), scene.vertices[polygon.corners[0]],
                               reflectance};
-      if (has_scene_before(scene, mirror, tolerance)) sides.push_back(mirror);
+      if (has_corner_before(scene.vertices, mirror, tolerance)) sides.push_back(mirror);
     }
   }
   return sides;
@@ -160,12 +166,6 @@ std::vector<Point> convex_hull(std::vector<Point> points, const Vector& normal) 
   add_half(points.begin(), points.end());
   add_half(points.rbegin(), points.rend());
   return hull;
-}
-
-Point middle_of(std::span<const Point> corners) {
-  Point middle = Point::Zero();
-  for (const Point& corner : corners) middle += corner / static_cast<double>(corners.size());
-  return middle;
 }
 
 // x - 2 n n . (x - p)
@@ -211,7 +211,7 @@ struct Beam {
 std::vector<Point> lit_part(std::vector<Point> polygon, const MirrorSide& mirror, std::span<const Point> section,
                             const SourceExtent& source) {
   polygon = clip_to_half_space(polygon, mirror.on_plane, mirror.normal);
-  const Point inside = middle_of(section);
+  const Point inside = ball_around(section).centre;
   for (std::size_t k = 0; k < section.size() && !polygon.empty(); ++k) {
     const Point& next = section[(k + 1) % section.size()];
     if (const auto normal = normal_inside(section[k], next, inside, source))
@@ -271,14 +271,9 @@ Spectrum flux_by_directions(const SourceFlux& light, const SourceExtent& seen, c
   return light.flux * (static_cast<double>(met) / directions_of_source);
 }
 
-bool has_corner_before(std::span<const Point> corners, const MirrorSide& mirror, double tolerance) {
-  return std::any_of(corners.begin(), corners.end(),
-                     [&](const Point& corner) { return mirror.normal.dot(corner - mirror.on_plane) > tolerance; });
-}
-
 // Bound of the light of all longer chains, relative to a chain of n mirrors. Each further mirror reflects rho, so the
-// sum is at most rho / (1 - rho). Images recede, as
-// k = n + 1, n + 2 ... do between two mirrors, so that it is less than the sum of n^2 / k^2, which is less than n.
+// sum is at most rho / (1 - rho). Images recede between two mirrors, like k = n + 1, n + 2 ..., so that it is less than
+// the sum of n^2 / k^2, which is less than n.
 double light_beyond(std::size_t mirrors, double reflectance) {
   const auto n = static_cast<double>(mirrors);
   return reflectance < 1 ? std::min(n, reflectance / (1 - reflectance)) : n;
@@ -314,7 +309,7 @@ class ChainSearch {
   std::vector<std::vector<Point>> corners_;  // of each side
   std::vector<std::vector<Point>> hulls_;
   std::vector<SourceFlux> sources_;
-  std::vector<std::array<double, 4>> points_ = scrambled_sobol(points_of_mirror, 1);
+  std::vector<std::array<double, 4>> points_ = scrambled_sobol(16, 1);  // of a mirror
   double most_reflectance_ = 0;
   double reflected_ = 0;        // W, straight from the sources, mean of the bands
   std::vector<Spectrum> left_;  // W, from each side
@@ -368,13 +363,14 @@ void ChainSearch::leave_out(const QueuedChain& candidate, const Beam& beam) {
   left_[candidate.first] += all * candidate.chain.reflectance * beam.flux;
 }
 
-// No more wait than may be followed yet: what a chain continues is never below it.
+// Beams with less than 1e-7 of the flux of their source are not followed. No more chains wait than may be followed yet:
+// a chain never carries more than the one that it continues.
 void ChainSearch::add(QueuedChain candidate) {
   std::vector<Beam> beams;
   for (Beam& beam : candidate.beams) {
     const double share = candidate.chain.reflectance * share_of(beam);
     candidate.share = std::max(candidate.share, share);
-    if (share >= least_share)
+    if (share >= 1e-7)
       beams.push_back(std::move(beam));
     else
       leave_out(candidate, beam);
@@ -440,6 +436,43 @@ MirrorChains ChainSearch::run() {
 }
 
 }  // namespace
+
+Ball ball_around(std::span<const Point> points) {
+  Ball ball;
+  for (const Point& point : points) ball.centre += point / static_cast<double>(points.size());
+  for (const Point& point : points) ball.radius = std::max(ball.radius, (point - ball.centre).norm());
+  return ball;
+}
+
+std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
+  std::vector<MirroredSource> sources;
+  const auto luminaires = static_cast<std::uint32_t>(lighting.luminaires.size());
+  for (std::uint32_t k = 0; k < luminaires; ++k) {
+    const Luminaire& luminaire = lighting.luminaires[k];
+    const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
+    sources.push_back({k,
+                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
+                         return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
+                       },
+                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}},
+                       luminaire.aim});
+  }
+  if (lighting.sun)
+    sources.push_back({luminaires,
+                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
+                         return arrived(at, from_sun(lighting, image));
+                       },
+                       {lighting.sun->direction, {}}});
+  for (const LampFace& lamp : lamps)
+    sources.push_back({luminaires + 1 + lamp.polygon,
+                       [&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
+                                                                  const Eigen::Vector2d& uv) {
+                         return from_lamp(lamp, points.at(uv.x(), uv.y()), at, image);
+                       },
+                       {{}, ball_around(lamp.corners)},
+                       lamp.normal});
+  return sources;
+}
 
 MirrorChains mirror_chains(const Scene& scene, std::span<const MirroredSource> sources) {
   return ChainSearch(scene, sources).run();

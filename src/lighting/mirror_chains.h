@@ -2,14 +2,60 @@
 
 #include "patchlight/scene/scene.h"
 
+#include "lighting/lighting.h"
+#include "visibility/occluder.h"
+
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
 
-struct MirroredSource;
+/// All points up to a distance from a center, meters.
+struct Ball {
+  Point centre = Point::Zero();
+  double radius = 0;
+};
+
+/// The least one around the middle of points.
+Ball ball_around(std::span<const Point> points);
+
+/// The light of one sample of a source at a place if nothing is in the way.
+struct MirroredArrival {
+  Segment segment;  ///< from the place to the source
+  Spectrum irradiance;
+};
+
+/// Light that arrives at the image of a place from one direction, for each sample of a source.
+using ArrivalAtImage = std::function<std::optional<MirroredArrival>(const SurfacePoint& at, const SurfacePoint& image,
+                                                                    const Eigen::Vector2d& uv)>;
+
+/// Where a source is: in a ball, or in a direction.
+struct SourceExtent {
+  std::optional<Vector> direction;
+  Ball ball;
+};
+
+/// A source and how its light arrives by way of mirrors.
+struct MirroredSource {
+  std::uint32_t id = 0;  ///< the same for a source in every list of one lighting; faces of one polygon share theirs
+  ArrivalAtImage arrival;
+  SourceExtent extent;
+  Vector axis = -Vector::UnitZ();  ///< unit; narrow beams lie around it
+};
+
+/// Luminaires and sun of a lighting, and lamps. Both must outlive the sources.
+std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps);
+
+/// The most mirrors on the way of light that is followed.
+inline constexpr std::size_t most_mirrors = 16;
+
+/// Light of which mirrors leave a smaller share is not followed.
+inline constexpr double least_reflectance = 1e-3;
 
 /// A side of a polygon that reflects light without scattering it: of a mirror, or of a clear polygon.
 struct MirrorSide {
@@ -48,8 +94,8 @@ struct MirrorChains {
   bool is_cut = false;          ///< there are more chains than are followed
 };
 
-/// Up to 1,024 chains of up to 16 mirrors, the product of whose reflectances is 1e-3 or more. Best-first search over
-/// beams (Heckbert and Hanrahan 1984): a chain carries no more than the shorter one that it continues.
+/// Up to 1,024 chains of up to most_mirrors, the product of whose reflectances is least_reflectance or more. Best-first
+/// search over beams (Heckbert and Hanrahan 1984): a chain carries no more than the shorter one that it continues.
 /// O(chains x mirrors x sources).
 MirrorChains mirror_chains(const Scene& scene, std::span<const MirroredSource> sources);
 

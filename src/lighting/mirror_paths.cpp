@@ -1,9 +1,13 @@
 #include "lighting/mirror_paths.h"
 
+#include "base/sampling.h"
+#include "base/tolerances.h"
 #include "form_factor/point_polygon.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -14,28 +18,10 @@ struct MirrorPaths::Way {
   std::vector<Point> places;
 };
 
-namespace {
-
-// Places nearer to a mirror's plane than this share of the scene's extent are on it: the receiver is the mirror.
-constexpr double on_plane_share = 1e-9;
-
-// Of squared distances that decide what need not be looked at.
-constexpr double rounding_of_squares = 1e-6;
-
-}  // namespace
-
-Ball ball_around(std::span<const Point> points) {
-  Ball ball;
-  for (const Point& point : points) ball.centre += point / static_cast<double>(points.size());
-  for (const Point& point : points) ball.radius = std::max(ball.radius, (point - ball.centre).norm());
-  return ball;
-}
-
 MirrorPaths::MirrorPaths(const Scene& scene, MirrorChains chains)
     : chains_(std::move(chains)),
       sides_(scene),
-      bands_(number_of_bands(scene)),
-      least_height_(on_plane_share * bounds(scene).diagonal().norm()),
+      least_height_(tolerance_of_shapes * bounds(scene).diagonal().norm()),
       flat_(scene.polygons.size()),
       balls_(scene.polygons.size()) {
   for (const MirrorChain& chain : chains_.chains) {
@@ -57,13 +43,13 @@ bool MirrorPaths::carries(const MirrorChain& chain, std::uint32_t source) const 
 }
 
 Spectrum MirrorPaths::unfollowed_irradiance(const Point& place, const Vector& normal) const {
-  Spectrum irradiance = Spectrum::Zero(bands_);
+  Spectrum irradiance = Spectrum::Zero(sides_.bands());
   for (const auto& [corners, exitance] : chains_.unfollowed)
     irradiance += point_to_polygon(place, normal, corners) * exitance;
   return irradiance;
 }
 
-// All these lines lie in the hull of the two balls, no farther from the segment between the centres than the larger
+// All these lines lie in the hull of the two balls, no farther from the segment between the centers than the larger
 // radius; so they meet the plane no farther from where the segment does than that over the cosine there.
 bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const {
   const MirrorSide& last = chain.mirrors.back();
@@ -77,13 +63,14 @@ bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const
   const double along = squared_length > 0 ? std::clamp((mirror.centre - image).dot(way) / squared_length, 0.0, 1.0) : 0;
   const double wide = std::max(receiver.radius, source.radius);
   const double reach = mirror.radius + wide;
-  if ((image + along * way - mirror.centre).squaredNorm() > (1 + rounding_of_squares) * reach * reach) return false;
+  if ((image + along * way - mirror.centre).squaredNorm() > (1 + tolerance_of_coordinates) * reach * reach)
+    return false;
   if (!(before > source.radius && behind > receiver.radius)) return true;
 
   const FlatPolygon& flat = flat_[last.polygon];
   const Eigen::Vector2d place = flat.in_plane(image + behind / (before + behind) * way);
   const double spread = wide * std::sqrt(squared_length) / (before + behind);
-  return flat.box.squaredExteriorDistance(place) <= (1 + rounding_of_squares) * spread * spread;
+  return flat.box.squaredExteriorDistance(place) <= (1 + tolerance_of_coordinates) * spread * spread;
 }
 
 bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const {
@@ -91,11 +78,11 @@ bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const
   const Vector way = mirror.centre - chain.image * receiver.centre;
   const double along = std::max(0.0, way.dot(toward_source));
   const double reach = mirror.radius + receiver.radius;
-  return (along * toward_source - way).squaredNorm() <= (1 + rounding_of_squares) * reach * reach;
+  return (along * toward_source - way).squaredNorm() <= (1 + tolerance_of_coordinates) * reach * reach;
 }
 
-// From the last mirror to the first: the straight line from the receiver's image behind a mirror to what light goes to
-// from there.
+// From the last mirror to the first: the straight line from the receiver's image behind a mirror to the place that
+// light goes to from there.
 std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::span<const Segment> segments) const {
   std::vector<Way> found;
   for (std::size_t k = 0; k < segments.size(); ++k) {
@@ -121,10 +108,10 @@ std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::s
 
 Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& paths,
                                  std::span<const Segment> segments) const {
-  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), bands_);
+  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), sides_.bands());
   const std::vector<Way> found = ways(chain, segments);
   if (found.empty()) return share;
-  Field along = Field::Ones(static_cast<Eigen::Index>(found.size()), bands_);
+  Field along = Field::Ones(static_cast<Eigen::Index>(found.size()), sides_.bands());
   for (std::size_t m = 0; m <= chain.mirrors.size(); ++m) {
     std::vector<Segment> parts;
     for (std::size_t w = 0; w < found.size(); ++w) {
@@ -144,6 +131,85 @@ Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& pat
   for (std::size_t w = 0; w < found.size(); ++w)
     share.row(static_cast<Eigen::Index>(found[w].segment)) = along.row(static_cast<Eigen::Index>(w));
   return share;
+}
+
+MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing)
+    : sides_(sides), occluder_(tracing.all_faces()) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    if (sides.is_specular(p)) targets_.push_back(opening_at(scene, p));
+  std::stable_sort(targets_.begin(), targets_.end(),
+                   [](const Opening& a, const Opening& b) { return a.area > b.area; });
+  targets_.resize(std::min<std::size_t>(targets_.size(), 256));  // rays over the hemisphere find smaller ones
+}
+
+// The probability of each target to be chosen; none where no target is before the receiver.
+std::vector<double> MirrorView::probabilities_from(const SurfacePoint& at) const {
+  std::vector<double> probabilities;
+  double sum = 0;
+  for (const Opening& target : targets_) {
+    const bool is_before = target.polygon != at.polygon && rises_above(target, at.point, at.normal, 0);
+    probabilities.push_back(is_before ? apparent_size(target, at.point) : 0);
+    sum += probabilities.back();
+  }
+  if (!(sum > 0)) return {};
+  for (double& probability : probabilities) probability /= sum;
+  return probabilities;
+}
+
+// 1/sr
+double MirrorView::aimed_density(std::span<const double> probabilities, const SurfacePoint& at,
+                                 const Vector& direction) const {
+  double density = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    if (const auto distance = distance_to(targets_[k], at.point, direction))
+      density += density_at(targets_[k], probabilities[k], *distance, direction);
+  }
+  return density;
+}
+
+// Straight on, through at most 64 clear faces.
+void MirrorView::follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const {
+  for (int crossing = 0; crossing < 64; ++crossing) {
+    const std::optional<Hit> hit = occluder_.first_hits({&ray, 1}).front();
+    if (!hit || !sides_.is_specular(hit->polygon)) return;
+    const Spectrum reflected = sides_.specular_reflectance(hit->polygon, hit->direction);
+    if ((reflected > 0).any())
+      into.push_back(
+          {{hit->point, occluder_.mirrored(hit->polygon, hit->direction), hit->polygon}, weight * reflected});
+    if (!sides_.is_clear(hit->polygon)) return;
+    weight *= sides_.transmittance(hit->polygon, hit->direction);
+    ray = {hit->point, hit->direction, hit->polygon};
+  }
+}
+
+std::vector<MirrorRay> MirrorView::further(std::span<const MirrorRay> rays, double whole) const {
+  std::vector<MirrorRay> met;
+  for (const auto& [ray, weight] : rays) follow(ray, weight, met);
+  std::erase_if(met, [&](const MirrorRay& one) { return one.weight.maxCoeff() < least_reflectance * whole; });
+  return met;
+}
+
+void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
+                          std::vector<MirrorRay>& into) const {
+  const std::vector<double> probabilities = probabilities_from(at);
+  if (probabilities.empty()) return;
+  const std::size_t half = samples.size() / 2;
+  for (std::size_t k = 0; k < 2 * half; ++k) {
+    const auto& [u, v, s, t] = samples[k];
+    Vector direction;
+    if (k < half) {
+      direction = cosine_direction(at.normal, s, t);
+    } else {
+      const Choice chosen = choose(probabilities, s);
+      direction = (point_of(targets_[chosen.index], chosen.rest, t) - at.point).normalized();
+    }
+    const double cosine = at.normal.dot(direction);
+    if (!(cosine > 0)) continue;
+    const double density = cosine / std::numbers::pi + aimed_density(probabilities, at, direction);
+    const double weight = cosine / (static_cast<double>(half) * density);
+    follow({at.point, direction, at.polygon}, Spectrum::Constant(sides_.bands(), weight), into);
+  }
 }
 
 }  // namespace patchlight

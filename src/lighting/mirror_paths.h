@@ -4,8 +4,10 @@
 
 #include "lighting/light_paths.h"
 #include "lighting/mirror_chains.h"
+#include "lighting/sky_openings.h"
 #include "visibility/flat_polygon.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,17 +15,8 @@
 
 namespace patchlight {
 
-/// All points up to a distance from a centre, metres.
-struct Ball {
-  Point centre = Point::Zero();
-  double radius = 0;
-};
-
-/// The least one around the middle of points.
-Ball ball_around(std::span<const Point> points);
-
-/// How much light gets from one point to another by way of mirrors: the product of what these reflect and of what
-/// LightPaths lets through between them.
+/// How much light gets from one point to another by way of mirrors: the product of their reflectances and of the
+/// transmittances of LightPaths between them.
 class MirrorPaths {
  public:
   MirrorPaths(const Scene& scene, MirrorChains chains);
@@ -41,12 +34,11 @@ class MirrorPaths {
   /// straight line from the receiver's image to the source misses one of them.
   Field transmittance(const MirrorChain& chain, const LightPaths& paths, std::span<const Segment> segments) const;
 
-  /// False where no straight line from the image of what is in a ball to what is in that of a source, or along a unit
-  /// direction towards it, meets the last mirror of a chain. Cheap, and true too often.
+  /// False where no straight line from the image of a receiver's ball to a source's ball, or in a source's direction,
+  /// meets the last mirror of a chain. Cheap, and true too often.
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const;
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const;
 
-  /// What a polygon reflects, PaneSides::specular_reflectance().
   const PaneSides& sides() const { return sides_; }
 
  private:
@@ -55,10 +47,42 @@ class MirrorPaths {
 
   MirrorChains chains_;
   PaneSides sides_;
-  Eigen::Index bands_;
-  double least_height_;            // metres
+  double least_height_;            // meters
   std::vector<FlatPolygon> flat_;  // per polygon; empty where it is no mirror
   std::vector<Ball> balls_;        // around each of these
+};
+
+/// A ray from a mirror along which a place sees light, and the irradiance of the place by a radiance of 1 in the ray,
+/// per band.
+struct MirrorRay {
+  Ray ray;
+  Spectrum weight;
+};
+
+/// Samples the light that places see in mirrors and in clear faces.
+class MirrorView {
+ public:
+  /// Keeps references to `sides` and to the tracing's occluder of all faces.
+  MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing);
+
+  /// Half of the samples stand for directions distributed as the cosine over the hemisphere, the others for places on
+  /// the mirrors before the receiver, both put together by the balance heuristic (Veach and Guibas 1995). Along each
+  /// direction every mirror and clear face that is met, up to something that lets nothing through, has a ray.
+  void add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
+                std::vector<MirrorRay>& into) const;
+
+  /// The rays that leave mirrors which these meet on their way, straight on or through clear faces; without
+  /// those whose weight relative to `whole` is below least_reflectance.
+  std::vector<MirrorRay> further(std::span<const MirrorRay> rays, double whole) const;
+
+ private:
+  std::vector<double> probabilities_from(const SurfacePoint& at) const;
+  double aimed_density(std::span<const double> probabilities, const SurfacePoint& at, const Vector& direction) const;
+  void follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const;
+
+  const PaneSides& sides_;
+  const Occluder& occluder_;
+  std::vector<Opening> targets_;  // the largest mirrors and clear faces
 };
 
 }  // namespace patchlight

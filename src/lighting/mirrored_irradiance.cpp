@@ -2,10 +2,8 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "lighting/mirrored_sources.h"
+#include "base/streams.h"
 #include "lighting/receiver.h"
-#include "lighting/receivers.h"
-#include "lighting/shifted_points.h"
 #include "mesh/small_patches.h"
 
 #include <algorithm>
@@ -23,10 +21,6 @@
 namespace patchlight {
 namespace {
 
-// Independent estimates of each irradiance, at most: their spread is its standard error. Of few samples there are
-// fewer.
-constexpr std::uint32_t most_replicates = 8;
-constexpr std::size_t most_mirrors_of_sky = 16;
 constexpr int doublings_at_points = 4;
 
 Ball ball_of(const Receiver& receiver) {
@@ -53,11 +47,6 @@ SurfacePoint image_of(const MirrorChain& chain, const SurfacePoint& at) {
 struct WantedChain {
   const MirrorChain* chain;
   std::vector<const MirroredSource*> sources;
-};
-
-struct MirroredEstimate {
-  Spectrum mean;
-  Spectrum standard_error;
 };
 
 // A place of the receiver, which samples lead on from it, and which replicate it belongs to.
@@ -106,7 +95,7 @@ std::vector<WantedChain> MirrorSampler::all_chains() const {
   return all;
 }
 
-// Those by which light may get to what is in a ball.
+// Those by which light may get to a ball.
 std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<const WantedChain> among) const {
   std::vector<WantedChain> wanted;
   const MirrorPaths& paths = lighting.mirrors->paths;
@@ -185,7 +174,7 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
       view.add_rays(places[k].at, pair, rays);
     }
   }
-  for (std::size_t mirrors = 1; mirrors <= most_mirrors_of_sky && !rays.empty(); ++mirrors) {
+  for (std::size_t mirrors = 1; mirrors <= most_mirrors && !rays.empty(); ++mirrors) {
     sum += sky_in(rays);
     rays = view.further(rays, is_point ? 1 : std::numbers::pi);
   }
@@ -229,22 +218,7 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   return found;
 }
 
-// The mean of replicates, and its standard error with the bound of the light that is not followed. The mean of one
-// replicate has an error as large as itself; without replicates both are 0.
-MirroredEstimate estimate_from(const OverChains& replicates) {
-  const Field& light = replicates.light;
-  const Eigen::Index count = light.rows();
-  if (count == 0) return {Spectrum::Zero(light.cols()), Spectrum::Zero(light.cols())};
-  const Spectrum mean = light.colwise().mean();
-  const Spectrum variance =
-      count == 1
-          ? Spectrum(mean.square())
-          : Spectrum((light.square().colwise().mean() - mean.square()).max(0.0) / static_cast<double>(count - 1));
-  const Spectrum beyond = replicates.beyond.colwise().mean();
-  return {mean, (variance + beyond.square()).sqrt()};
-}
-
-// Receivers: what share of the replicates each takes, and how often the points of these are doubled.
+// Receivers, the share of the replicates that each takes, and how often the points of these are doubled.
 struct MirrorReceivers {
   std::size_t count = 0;
   std::function<Receiver(std::size_t)> at;
@@ -257,11 +231,11 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
                                const LightingOptions& options, const Observer& observer) {
   MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
-  const std::uint32_t replicates = std::min(most_replicates, std::max(2U, samples / 2));
+  const std::uint32_t replicates = std::clamp(samples / 2, 2U, 8U);
   const std::uint32_t of_each = samples / replicates;
   for (std::uint32_t r = 0; r < replicates; ++r)
-    sampler.points.push_back(
-        scrambled_sobol(of_each << static_cast<unsigned>(all.most_doublings), hash({options.seed, r, 7})));
+    sampler.points.push_back(scrambled_sobol(of_each << static_cast<unsigned>(all.most_doublings),
+                                             hash({options.seed, r, stream::points_of_mirror_chains})));
   const std::vector<WantedChain> chains = sampler.all_chains();
   const std::size_t count = all.count;
   const auto rows = static_cast<Eigen::Index>(count);
@@ -275,20 +249,20 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
     for (std::size_t k = begin; k < begin + receivers.size(); ++k) {
       const auto share = static_cast<std::size_t>(std::lround(all.share_at(k) * replicates));
       const MirrorEffort effort{std::max<std::size_t>(2, share), std::size_t{of_each} << all.doublings_at(k)};
-      const OverChains replicates_of =
-          sampler.replicates_at(receivers[k - begin], hash({options.seed, k / options.alike, 8}), effort, near);
-      const MirroredEstimate found = estimate_from(replicates_of);
-      direct.irradiance.row(static_cast<Eigen::Index>(k)) = found.mean;
-      direct.standard_error.row(static_cast<Eigen::Index>(k)) = found.standard_error;
+      const std::uint32_t key = hash({options.seed, k / options.alike, stream::shift_at_receiver});
+      const auto [light, not_followed] = sampler.replicates_at(receivers[k - begin], key, effort, near);
+      if (light.rows() == 0) continue;
+      const auto [mean, variance] = estimate_of(light);
+      const Spectrum bound = not_followed.colwise().mean();
+      direct.irradiance.row(static_cast<Eigen::Index>(k)) = mean;
+      direct.standard_error.row(static_cast<Eigen::Index>(k)) = (variance + bound.square()).sqrt();
     }
   });
   return direct;
 }
 
-// Faces of emitting polygons whose chains are ranked; others are sampled by all chains.
-constexpr std::size_t most_ranked_faces = 256;
-
-// Those of the strongest polygons, each polygon with both sides, as a chain does not distinguish them.
+// Up to 256 faces of the strongest emitting polygons, each polygon with both sides, because a chain does not
+// distinguish them. Their chains are ranked; other faces are sampled by all chains.
 std::vector<LampFace> ranked_faces(const Scene& scene) {
   struct Emitter {
     std::vector<LampFace> faces;
@@ -310,7 +284,7 @@ std::vector<LampFace> ranked_faces(const Scene& scene) {
   std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
   std::vector<LampFace> ranked;
   for (const Emitter& emitter : emitters) {
-    if (ranked.size() + emitter.faces.size() > most_ranked_faces) break;
+    if (ranked.size() + emitter.faces.size() > 256) break;
     ranked.insert(ranked.end(), emitter.faces.begin(), emitter.faces.end());
   }
   return ranked;
@@ -328,10 +302,7 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
   const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
   const double usual = options.usual_area > 0 ? options.usual_area : mean_area(areas);
   const std::span<const std::uint8_t> more = options.doublings;
-  const auto share = [&](std::size_t k) {
-    constexpr double least = 0.25;
-    return std::clamp(std::sqrt(areas[k] / usual), least, 1.0);
-  };
+  const auto share = [&](std::size_t k) { return std::clamp(std::sqrt(areas[k] / usual), 0.25, 1.0); };
   const auto doublings = [&](std::size_t k) -> unsigned { return more.empty() ? 0 : more[k]; };
   const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
   return in_mirrors_at(lighting, lamps, {std::size_t{mesh.size()}, patch, share, doublings, most}, options, observer);

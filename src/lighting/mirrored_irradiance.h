@@ -4,16 +4,14 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include "lighting/direct_irradiance.h"
-#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
 #include "lighting/mirror_paths.h"
-#include "lighting/mirror_rays.h"
 
 #include <span>
 
 namespace patchlight {
 
-/// What a scene's mirrors and clear faces do to light that lamps, luminaires, sun and sky send over them.
+/// The ways of the light of lamps, luminaires, sun and sky over a scene's mirrors and clear faces.
 struct Mirrors {
   MirrorPaths paths;
   MirrorView view;
@@ -24,9 +22,9 @@ struct Mirrors {
 };
 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
-/// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to 16.
-/// `lighting` must have mirrors; it is sampled as direct_irradiance() samples. docs/theory/panes-mirrors-sheets.md.
-/// O(patches x chains x lights x mirrored_samples). \throws Cancelled.
+/// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to
+/// most_mirrors. `lighting` must have mirrors; it is sampled as direct_irradiance() samples.
+/// docs/theory/panes-mirrors-sheets.md. O(patches x chains x lights x mirrored_samples). \throws Cancelled.
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options = {}, const Observer& observer = {});
 

@@ -3,12 +3,12 @@
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/scene.h"
 
-#include "lighting/pane_sides.h"
 #include "lighting/receiver.h"
 #include "scene/coverings.h"
 #include "scene/light_place.h"
 #include "visibility/shaft.h"
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -17,25 +17,42 @@
 
 namespace patchlight {
 
+/// A convex polygon of a plane, counter-clockwise.
+using PlanarOutline = std::vector<Eigen::Vector2d>;
+
+/// The area of an outline, m^2; negative when it runs clockwise.
+double area_of(const PlanarOutline& outline);
+
+/// The shadow of something on a region.
+struct Shade {
+  PlanarOutline outline;
+  const Spectrum* transmittance = nullptr;  ///< of the polygon that throws it; lives elsewhere; null: opaque
+};
+
+/// Integral over a convex region of the product of the transmittances of all shades there, m^2 per band: exact up to
+/// rounding. Shades may overlap and reach beyond the region. Regions in which many meet are halved first. Nothing when
+/// that would take too long.
+std::optional<Spectrum> lit_area(const PlanarOutline& region, const std::vector<Shade>& shades, Eigen::Index bands);
+
 /// A part of a patch, convex.
 struct LitPart {
   std::array<Point, 4> corners;
   double exposed = 0;  ///< area that no other polygon covers, m^2
-  Spectrum lit;        ///< integral over it of what is let through, m^2 per band
-  Spectrum uneven;  ///< of that, or of the rest if it is less, what lies anywhere in the part; 0 where all of the part
-                    ///< lies behind the same panes
-  Spectrum doubt;   ///< its standard error, as panes let more through at one place of the part than at another
+  Spectrum lit;        ///< integral over it of the transmittance, m^2 per band
+  Spectrum uneven;     ///< the lit or the unlit area, if it is less, that lies anywhere in the part; 0 where all of the
+                       ///< part lies behind the same panes
+  Spectrum doubt;      ///< its standard error, because the transmittance of panes varies over the part
 };
 
-/// What stands between patches and a light that has no extent, by geometry alone: however small a hole is, the light
-/// that gets through it is found. Immutable and safe to use from several threads.
+/// The shadows of polygons between patches and a light without extent, by geometry alone: however small a hole is, the
+/// light that gets through it is found. Immutable and safe to use from several threads.
 class Shades {
  public:
   explicit Shades(const Scene& scene, const Coverings& coverings = {});
 
-  /// Mean over the exposed part of a patch of what is let through from a light before it, per band: exact up to
-  /// rounding, but that panes between it and a point let through what they do at one place of the patch. Nothing where
-  /// the shadows of too many polygons meet to say so in reasonable time.
+  /// Mean transmittance per band, over the exposed part of a patch, of the ways from a light before it: exact up to
+  /// rounding, but that panes count with the transmittance towards one place of the patch. Nothing where the shadows of
+  /// too many polygons meet to find it in reasonable time.
   std::optional<Spectrum> transmittance(const Receiver& patch, const LightPlace& light) const;
 
   /// The same by parts, sixteen of a patch, with panes as from the middle and the corners of each.

@@ -89,9 +89,7 @@ std::array<double, 5> perez_coefficients(double clearness, double stated_brightn
   const double brightness = valid_brightness(clearness, stated_brightness, sun_zenith_angle);
   const PerezRow& x = perez_table[category];
   std::array<double, 5> coefficients{};
-  for (std::size_t k = 0; k < 5; ++k) {
-    coefficients[k] = line_of(x[k], sun_zenith_angle).at(brightness);
-  }
+  for (std::size_t k = 0; k < 5; ++k) coefficients[k] = line_of(x[k], sun_zenith_angle).at(brightness);
   if (category > 0) return coefficients;
   const auto& c = x[2];
   const auto& d = x[3];
@@ -100,25 +98,24 @@ std::array<double, 5> perez_coefficients(double clearness, double stated_brightn
   return coefficients;
 }
 
-// Of a horizontal plane, for a colour of 1: the integral of the relative radiance times sin h over the hemisphere, by
-// the midpoint rule in altitude h and azimuth.
+// The irradiance of a horizontal plane, for a color of 1: the integral of the relative radiance times sin h over the
+// hemisphere, by the midpoint rule in altitude h and azimuth.
 double horizontal_irradiance(const SkyModel& sky) {
-  constexpr int rings = 400;
-  constexpr int turns = 400;
+  constexpr int steps = 400;
   const Vector across = sky.up.unitOrthogonal();
   const Vector aside = sky.up.cross(across);
   double sum = 0;
-  for (int ring = 0; ring < rings; ++ring) {
-    const double altitude = std::numbers::pi / 2 * (ring + 0.5) / rings;
+  for (int ring = 0; ring < steps; ++ring) {
+    const double altitude = std::numbers::pi / 2 * (ring + 0.5) / steps;
     double around = 0;
-    for (int turn = 0; turn < turns; ++turn) {
-      const double azimuth = 2 * std::numbers::pi * (turn + 0.5) / turns;
+    for (int turn = 0; turn < steps; ++turn) {
+      const double azimuth = 2 * std::numbers::pi * (turn + 0.5) / steps;
       around += relative_radiance(sky, std::sin(altitude) * sky.up + std::cos(altitude) * (std::cos(azimuth) * across +
                                                                                            std::sin(azimuth) * aside));
     }
     sum += around * std::sin(altitude) * std::cos(altitude);
   }
-  return sum * (std::numbers::pi / 2 / rings) * (2 * std::numbers::pi / turns);
+  return sum * (std::numbers::pi / 2 / steps) * (2 * std::numbers::pi / steps);
 }
 
 }  // namespace
@@ -128,10 +125,9 @@ double relative_radiance(const SkyModel& sky, const Vector& direction) {
   if (sky.kind == SkyKind::uniform) return 1;
   if (sky.kind == SkyKind::cie_overcast) return (1 + 2 * std::max(0.0, sine)) / 3;
   // At the horizon 1 / cos zeta has no bound; the fit ends at some degrees above it.
-  constexpr double lowest_sine = 0.01;
   const auto& [a, b, c, d, e] = sky.coefficients;
   const double cosine = std::clamp(direction.dot(sky.sun_direction), -1.0, 1.0);
-  const double gradation = 1 + a * std::exp(b / std::max(sine, lowest_sine));
+  const double gradation = 1 + a * std::exp(b / std::max(sine, 0.01));
   const double indicatrix = 1 + c * std::exp(d * std::acos(cosine)) + e * cosine * cosine;
   return std::max(0.0, gradation * indicatrix);
 }

@@ -1,6 +1,7 @@
 #include "lighting/sky_irradiance.h"
 
 #include "base/sampling.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <array>
@@ -14,32 +15,22 @@
 namespace patchlight {
 namespace {
 
-// Rays that tell whether aiming pays: over the hemisphere, and towards openings. Their places and directions are their
-// own, so that what is aimed at does not depend on what is found.
-constexpr std::uint32_t rays_ahead = 32;
-constexpr std::uint32_t seed_ahead = 2;
-
-// Of the rays towards openings, those that choose any of them alike.
-constexpr double any_alike = 0.125;
-
-// How far before the plane of a receiver an opening may lie by rounding, as a share of its distance.
-constexpr double plane_rounding = 1e-9;
-
 Vector toward(const Opening& opening, const Point& from, double u, double v) {
   return (point_of(opening, u, v) - from).normalized();
 }
 
-// The share of such rays that meet nothing opaque.
+// The share of a few rays in some directions that meet nothing opaque. They decide whether aiming pays, with places and
+// directions of their own, so that the aim does not depend on the light that is found.
 template <class Direction>
 double free_share_ahead(const Lighting& lighting, const Receiver& receiver, const Direction& direction_at) {
-  static const auto samples = scrambled_sobol(rays_ahead, seed_ahead);
+  static const auto samples = scrambled_sobol(32, 2);
   std::vector<Segment> rays;
   for (const auto& [u, v, s, t] : samples) {
     const SurfacePoint at = receiver.place(u, v);
     rays.push_back({at.point, lighting.paths.beyond(at.point, direction_at(at, s, t)), at.polygon, no_polygon});
   }
   const std::vector<std::uint8_t> blocked = lighting.paths.meets_opaque(rays);
-  return static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / rays_ahead;
+  return static_cast<double>(std::count(blocked.begin(), blocked.end(), 0)) / static_cast<double>(blocked.size());
 }
 
 // Does a ray to the sky through one of the holes get there?
@@ -73,24 +64,18 @@ double aimed_density(const Lighting& lighting, const std::vector<double>& probab
                      const Vector& direction, const std::vector<Crossing>& crossings) {
   double density = 0;
   if (probabilities.empty()) return density;
-  const auto add = [&](const Opening& opening, double probability, double distance) {
-    const double facing = std::abs(opening.normal.dot(direction));
-    if (facing > 0) density += probability * distance * distance / (facing * opening.area);
-  };
   const std::vector<Opening>& openings = lighting.openings;
   for (std::size_t k = first_hole(openings); k < openings.size(); ++k) {
     if (!(probabilities[k] > 0)) continue;
-    if (const auto distance = distance_to(openings[k], from, direction)) add(openings[k], probabilities[k], *distance);
+    if (const auto distance = distance_to(openings[k], from, direction))
+      density += density_at(openings[k], probabilities[k], *distance, direction);
   }
   for (const Crossing& crossing : crossings) {
-    if (const auto k = opening_of(openings, crossing.polygon)) add(openings[*k], probabilities[*k], crossing.distance);
+    if (const auto k = opening_of(openings, crossing.polygon))
+      density += density_at(openings[*k], probabilities[*k], crossing.distance, direction);
   }
   return density;
 }
-
-// Rays over the hemisphere do not count where those towards openings are so many times as dense: they hardly ever get
-// there, and their absence would not be noticed. Veach and Guibas 1995, the cutoff heuristic.
-constexpr double cutoff = 8;
 
 struct SkyRays {
   std::vector<Vector> directions;
@@ -135,33 +120,16 @@ SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoint
   return rays;
 }
 
-// The solid angle that it would fill if it were turned to a place, roughly.
-double apparent_size(const Opening& opening, const Point& from) {
-  return opening.area / ((opening.centre - from).squaredNorm() + opening.area);
-}
-
-// Is a corner of the opening so high above the plane of a place? Mostly its centre tells.
-bool rises_above(const Opening& opening, const SurfacePoint& at, double height) {
-  const double of_centre = at.normal.dot(opening.centre - at.point);
-  if (of_centre > height) return true;
-  if (of_centre + opening.radius <= height) return false;
-  return std::any_of(opening.triangles.begin(), opening.triangles.end(), [&](const std::array<Point, 3>& triangle) {
-    return std::any_of(triangle.begin(), triangle.end(),
-                       [&](const Point& corner) { return at.normal.dot(corner - at.point) > height; });
-  });
-}
-
 // L tau cos cos' towards the middle or a corner of an opening, the largest of each band: where its middle is below the
 // horizon of the place, a corner may be above.
 Spectrum brightest_of(const Lighting& lighting, const SurfacePoint& at, const Opening& opening) {
-  constexpr double short_way = 1e-3;  // across the opening, to find what it lets through
   std::vector<Point> points{opening.centre};
   for (const auto& triangle : opening.triangles) points.insert(points.end(), triangle.begin(), triangle.end());
   std::vector<Segment> across;
   std::vector<double> cosines;
   for (const Point& point : points) {
     const Vector direction = (point - at.point).normalized();
-    const Vector half_way = short_way * opening.radius * direction;
+    const Vector half_way = 1e-3 * opening.radius * direction;  // across the opening, to find its transmittance
     cosines.push_back(std::max(0.0, at.normal.dot(direction)) * std::abs(opening.normal.dot(direction)));
     across.push_back({opening.centre - half_way, opening.centre + half_way, no_polygon, no_polygon});
   }
@@ -183,7 +151,7 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
   for (const Opening& opening : lighting.openings) {
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
-    const bool is_before = rises_above(opening, at, plane_rounding * std::sqrt(square));
+    const bool is_before = rises_above(opening, at.point, at.normal, tolerance_of_shapes * std::sqrt(square));
     const double weight = is_before && !is_own ? apparent_size(opening, at.point) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
@@ -192,6 +160,7 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
   if (!(sum > 0)) return {};
   const auto count = static_cast<double>(
       std::count_if(aim.probabilities.begin(), aim.probabilities.end(), [](double weight) { return weight > 0; }));
+  constexpr double any_alike = 0.125;
   for (double& probability : aim.probabilities)
     probability = probability > 0 ? (1 - any_alike) * probability / sum + any_alike / count : 0;
   if (!aim.at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities))
@@ -212,14 +181,15 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
     if (!(transmittance > 0).any()) continue;
     const Point& from = rays.segments[k].from;
     const Vector& direction = rays.directions[k];
-    // A ray that slips past the edge of what it was aimed at belongs to neither kind.
+    // A ray that slips past the edge of its opening belongs to neither kind.
     const std::optional<std::size_t> aimed_at = rays.aimed_at[k];
     const bool is_aimed = aimed_at.has_value();
     if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
     if (is_aimed) found.seen.through[*aimed_at] = 1;
     const double over_hemisphere = scattered * rays.cosines[k] / std::numbers::pi;
     const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
-    const bool is_cut_off = at_openings > cutoff * over_hemisphere;
+    // Rays over the hemisphere that are so rare hardly ever get there, and their absence would not be noticed.
+    const bool is_cut_off = at_openings > 8 * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;
     const double density = is_cut_off ? at_openings : over_hemisphere + at_openings;
     found.irradiance += radiance(*lighting.sky, direction) * transmittance * (rays.cosines[k] / density);

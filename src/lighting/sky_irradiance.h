@@ -14,23 +14,23 @@ struct SkyAim {
   bool at_panes = false;              ///< some of these are clear faces
 };
 
-/// What rays are for: the mean over a patch, or single points.
+/// The purpose of rays: the mean over a patch, or single points.
 enum class AimFor : std::uint8_t { patch, points };
 
-/// Seven of eight rays choose an opening with a probability as the solid angle that it would fill if it were turned to
-/// the receiver's middle, roughly, and the others any alike, so that a slit is found whose light windows outshine that
-/// the receiver does not see; none behind the receiver. Holes alone are not aimed at where a few rays see much of the
-/// sky without, nor for a patch where a few see none of it through the holes, which may be hidden: of a point that
-/// would miss what is left in sight of a window behind a table's leg, and no error would tell.
+/// Seven of eight rays choose an opening before the receiver in proportion to its apparent_size(). The others choose
+/// any alike: so they find slits that are darker than windows which the receiver does not see. Rays are not aimed at
+/// holes alone where a few rays see much of the sky without. Neither are they for a patch where a few see no sky
+/// through the holes, which may be hidden. A point would so miss the visible rest of a window behind a table's leg,
+/// with no error.
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
 
-/// What of the sky rays have seen.
+/// The openings through which rays have seen the sky.
 struct SkySeen {
   std::vector<std::uint8_t> through;  ///< per opening that may be aimed at, 1: a ray got to the sky through it
   std::size_t aimed = 0;              ///< rays towards openings
 };
 
-/// What rays find of the sky.
+/// The light of the sky that rays find.
 struct SkyLight {
   Spectrum irradiance;
   SkySeen seen;
@@ -40,13 +40,12 @@ struct SkyLight {
 /// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the
 /// balance heuristic (Veach and Guibas 1995, eq. 14): with clear faces a second one for each of half of the samples,
 /// with holes alone one more for each of the first half. Where these are many times as dense they alone count (the
-/// cutoff heuristic of the same paper). What gets in through a gap that is no opening is found by the
-/// first kind alone.
+/// cutoff heuristic of the same paper). Only the first kind finds light through a gap that is no opening.
 SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
 
-/// What one ray towards openings would bring to a point, W/m^2: the most, in each band, by any opening through which
-/// none of so many has got to the sky. As no hit of n rays means at most a few of n, this is how far off that light may
-/// be; as for the shadow rays of sensors, one of them counts (gather.h).
+/// The light that one ray towards openings would bring to a point, W/m^2: the most, in each band, by any opening
+/// through which none of so many has got to the sky. As no hit of n rays means at most a few of n, this is how far off
+/// that light may be; as for the shadow rays of sensors, one of them counts (gather.h).
 Spectrum missed_sky(const Lighting& lighting, const SurfacePoint& at, const SkyAim& aim, const SkySeen& seen);
 
 }  // namespace patchlight

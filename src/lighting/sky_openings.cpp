@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/tolerances.h"
 #include "scene/holes.h"
 #include "scene/triangulate.h"
 #include "scene/turn.h"
@@ -15,23 +16,14 @@
 namespace patchlight {
 namespace {
 
-// Lines through a hole, and rays from a place at which one of them ends, to find out how much sky that sees.
-constexpr std::uint32_t lines_through_a_hole = 64;
-constexpr std::uint32_t rays_from_a_place = 16;
-
 constexpr std::size_t most_holes = 256;
-constexpr std::size_t most_candidates = 4096;  // the largest are looked at
-constexpr std::uint32_t seed_of_lines = 1;
-
-// What a hole adds to other openings where less than this share of its lit lines avoids them.
-constexpr double little_light = 0.05;
 
 double area_of(const std::array<Point, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return (b - a).cross(c - a).norm() / 2;
 }
 
-// Of triangles in one plane.
+// The triangles lie in one plane.
 Opening opening_of(PolygonIndex polygon, const Vector& normal, std::vector<std::array<Point, 3>> triangles) {
   Opening opening{.polygon = polygon, .normal = normal, .centre = Point::Zero(), .triangles = std::move(triangles)};
   const Point& origin = opening.triangles[0][0];
@@ -60,46 +52,38 @@ Opening hole_of(const Hole& hole) {
   return opening_of(no_polygon, normal, std::move(triangles));
 }
 
-// The end of a straight line through a hole that has the sky at its other end.
+// The end of a straight line through a hole that has the sky at its other end, and the place where it meets a face.
 struct LitEnd {
-  Point on_hole;
-  Vector direction;  // towards that end
+  Ray ray;  // from the hole towards that end
+  std::optional<Hit> place;
 };
 
 std::vector<LitEnd> lit_ends(const Opening& hole, const LightPaths& paths) {
-  static const auto samples = scrambled_sobol(lines_through_a_hole, seed_of_lines);
-  std::vector<LitEnd> ends;
+  static const auto samples = scrambled_sobol(64, 1);
+  std::vector<Ray> ends;
   std::vector<Segment> ways;
   for (const auto& [u, v, s, t] : samples) {
     const Point on_hole = point_of(hole, u, v);
     const Vector direction = cosine_direction(hole.normal, s, t);
     for (const Vector& way : {direction, Vector(-direction)}) {
-      ends.push_back({on_hole, way});
+      ends.push_back({on_hole, way, no_polygon});
       ways.push_back({on_hole, paths.beyond(on_hole, way), no_polygon, no_polygon});
     }
   }
   const std::vector<std::uint8_t> blocked = paths.meets_opaque(ways);
-  std::vector<LitEnd> lit;
+  std::vector<Ray> lit;
   for (std::size_t k = 0; k < ends.size(); ++k) {
     if (blocked[k] != 0 && blocked[k ^ 1U] == 0) lit.push_back(ends[k]);
   }
-  return lit;
-}
-
-// The places where they meet faces.
-std::vector<Hit> places_behind(const std::vector<LitEnd>& ends, const LightPaths& paths) {
-  std::vector<Ray> rays;
-  for (const LitEnd& end : ends) rays.push_back({end.on_hole, end.direction, no_polygon});
-  std::vector<Hit> places;
-  for (const std::optional<Hit>& hit : paths.first_opaque_hits(rays)) {
-    if (hit) places.push_back(*hit);
-  }
-  return places;
+  const std::vector<std::optional<Hit>> places = paths.first_opaque_hits(lit);
+  std::vector<LitEnd> found;
+  for (std::size_t k = 0; k < lit.size(); ++k) found.push_back({lit[k], places[k]});
+  return found;
 }
 
 // The share of their hemispheres in which nothing lies, weighted by the cosine.
 double free_share(const Scene& scene, const std::vector<Hit>& places, const LightPaths& paths) {
-  static const auto samples = scrambled_sobol(rays_from_a_place, seed_of_lines);
+  static const auto samples = scrambled_sobol(16, 1);
   std::vector<Segment> rays;
   for (const Hit& place : places) {
     const Vector normal = (place.side == Side::front ? 1 : -1) * front_normal(scene, place.polygon);
@@ -122,13 +106,15 @@ std::vector<Candidate> largest_holes(const Scene& scene) {
   for (const Hole& hole : holes_between_faces(scene)) holes.push_back({hole.plane, hole_of(hole)});
   std::stable_sort(holes.begin(), holes.end(),
                    [](const Candidate& a, const Candidate& b) { return a.opening.area > b.opening.area; });
-  if (holes.size() > most_candidates) holes.resize(most_candidates);
+  holes.resize(std::min<std::size_t>(holes.size(), 4096));
   return holes;
 }
 
-// By how many lines light gets in, times the area; 0 where what it meets sees much of the sky.
+// The number of lines by which light gets in, times the area; 0 where the places that it meets see much of the sky.
 double light_through(const Scene& scene, const Opening& hole, const LightPaths& paths) {
-  const std::vector<Hit> places = places_behind(lit_ends(hole, paths), paths);
+  std::vector<Hit> places;
+  for (const LitEnd& end : lit_ends(hole, paths))
+    if (end.place) places.push_back(*end.place);
   if (places.empty() || free_share(scene, places, paths) > much_sky) return 0;
   return hole.area * static_cast<double>(places.size());
 }
@@ -163,21 +149,16 @@ std::vector<Opening> shining_holes(const Scene& scene, const LightPaths& paths) 
   return openings;
 }
 
-// True when a light way from such an end passes one of these openings.
-bool passes(const LitEnd& end, const Point& place, const std::vector<Opening>& openings) {
-  return std::any_of(openings.begin(), openings.end(),
-                     [&](const Opening& opening) { return distance_to(opening, place, -end.direction).has_value(); });
-}
-
-// Of the lit lines through a hole, the share that passes none of these openings.
+// The share of the lit lines through a hole that passes none of these openings.
 double share_apart(const Opening& hole, const LightPaths& paths, const std::vector<Opening>& openings) {
   const std::vector<LitEnd> ends = lit_ends(hole, paths);
-  std::vector<Ray> rays;
-  for (const LitEnd& end : ends) rays.push_back({end.on_hole, end.direction, no_polygon});
-  const auto places = paths.first_opaque_hits(rays);
   double apart = 0;
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    if (places[k] && !passes(ends[k], places[k]->point, openings)) apart += 1 / static_cast<double>(ends.size());
+  for (const auto& [ray, place] : ends) {
+    if (!place) continue;
+    const auto is_on_way = [&, from = place->point, to_sky = Vector(-ray.direction)](const Opening& opening) {
+      return distance_to(opening, from, to_sky).has_value();
+    };
+    if (std::none_of(openings.begin(), openings.end(), is_on_way)) apart += 1 / static_cast<double>(ends.size());
   }
   return apart;
 }
@@ -201,7 +182,8 @@ std::optional<double> distance_to(const Opening& opening, const Point& origin, c
   const double distance = opening.normal.dot(opening.centre - origin) / facing;
   if (!(distance > 0)) return std::nullopt;
   const Point met = origin + distance * direction;
-  if ((met - opening.centre).squaredNorm() > (1 + 1e-9) * opening.radius * opening.radius) return std::nullopt;
+  if ((met - opening.centre).squaredNorm() > (1 + tolerance_of_shapes) * opening.radius * opening.radius)
+    return std::nullopt;
   const auto holds = [&](const std::array<Point, 3>& triangle) {
     const auto& [a, b, c] = triangle;
     return turn(opening.normal, a, b, met) >= 0 && turn(opening.normal, b, c, met) >= 0 &&
@@ -209,6 +191,25 @@ std::optional<double> distance_to(const Opening& opening, const Point& origin, c
   };
   if (std::none_of(opening.triangles.begin(), opening.triangles.end(), holds)) return std::nullopt;
   return distance;
+}
+
+double density_at(const Opening& opening, double probability, double distance, const Vector& direction) {
+  const double facing = std::abs(opening.normal.dot(direction));
+  return facing > 0 ? probability * distance * distance / (facing * opening.area) : 0;
+}
+
+double apparent_size(const Opening& opening, const Point& from) {
+  return opening.area / ((opening.centre - from).squaredNorm() + opening.area);
+}
+
+// Mostly the center decides.
+bool rises_above(const Opening& opening, const Point& on_plane, const Vector& normal, double height) {
+  const double middle = normal.dot(opening.centre - on_plane) - height;
+  if (std::abs(middle) > (1 + tolerance_of_shapes) * opening.radius) return middle > 0;
+  for (const auto& triangle : opening.triangles)
+    for (const Point& corner : triangle)
+      if (normal.dot(corner - on_plane) > height) return true;
+  return false;
 }
 
 Opening opening_at(const Scene& scene, PolygonIndex polygon) {
@@ -222,7 +223,8 @@ std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
     if (is_opening(scene, p)) openings.push_back(opening_at(scene, p));
   }
   for (Opening& hole : shining_holes(scene, paths)) {
-    if (share_apart(hole, paths, openings) > little_light) openings.push_back(std::move(hole));
+    // A hole adds little where most of its lit lines pass other openings.
+    if (share_apart(hole, paths, openings) > 0.05) openings.push_back(std::move(hole));
   }
   return openings;
 }

@@ -16,7 +16,7 @@ struct Opening {
   PolygonIndex polygon = no_polygon;  ///< none: a hole
   Vector normal;                      ///< unit
   Point centre;
-  double radius = 0;                            ///< metres: no corner is farther from the centre
+  double radius = 0;                            ///< meters: no corner is farther from the center
   double area = 0;                              ///< m^2
   std::vector<std::array<Point, 3>> triangles;  ///< that it consists of, in one plane
   std::vector<double> upto = {};                ///< per triangle: the area of it and all before, m^2
@@ -46,5 +46,15 @@ Point point_of(const Opening& opening, double u, double v);
 
 /// How far along a ray in a unit direction an opening lies; nothing when it is not met.
 std::optional<double> distance_to(const Opening& opening, const Point& origin, const Vector& direction);
+
+/// The density, 1/sr, in a unit direction of rays that choose an opening with this probability and then a point of it,
+/// where they meet it at this distance.
+double density_at(const Opening& opening, double probability, double distance, const Vector& direction);
+
+/// Approximately the solid angle that it would fill if it were turned to a place.
+double apparent_size(const Opening& opening, const Point& from);
+
+/// True when a corner of the opening is so high above the plane through a point.
+bool rises_above(const Opening& opening, const Point& on_plane, const Vector& normal, double height);
 
 }  // namespace patchlight

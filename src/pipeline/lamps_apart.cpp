@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "base/vectors.h"
-#include "lighting/lamp_faces.h"
 #include "lighting/mirrored_irradiance.h"
 #include "pipeline/lit_problem.h"
 

@@ -3,7 +3,6 @@
 #include "patchlight/base/field.h"
 #include "patchlight/base/geometry.h"
 
-#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
 #include "lighting/sky_irradiance.h"
 

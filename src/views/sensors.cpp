@@ -4,7 +4,6 @@
 #include "gather/doubtful_sensors.h"
 #include "gather/mirrored_gather.h"
 #include "gather/sensor_places.h"
-#include "lighting/lamp_faces.h"
 #include "lighting/light_paths.h"
 #include "lighting/mirrored_irradiance.h"
 #include "pipeline/lamps_apart.h"

@@ -54,18 +54,18 @@ struct GatheredIrradiance {
 };
 
 /// Irradiance at points by gathering the solved radiosity: every patch by its closed-form form factor times the share
-/// of it that shadow rays reach. How many rays a patch gets follows from what it could give, and not from what its rays
-/// meet: where few of them get through narrow openings, none of the light is lost. The rays of a patch come in
+/// of it that shadow rays reach. How many rays a patch gets follows from its unoccluded light, and not from the hits of
+/// its rays: where few of them get through narrow openings, none of the light is lost. The rays of a patch come in
 /// replicates with random shifts of their own, whose scatter is the standard error; it is at least what the heaviest
 /// ray would give of those patches whose rays agree, as no hit in n rays means at most a few in n. Sensors of which the
 /// standard error is too large get more rays, in proportion to its square. The random numbers follow from the sensor's
 /// place.
 ///
 /// On each patch the radiosity is a plane, its slopes fitted to the means of the patches around: above a patch that is
-/// bright in its middle less is read off its dark corners. What a plane does not explain is an error, by as much as the
-/// sensor sees the patch unevenly, docs/theory/irradiance-at-a-point.md. Such errors of patches add up in squares. Of
-/// polygon sides with four patches or fewer, which symmetry may make alike, all that they reflect is one where
-/// `display` is not known.
+/// bright in its middle less is read off its dark corners. The light that a plane does not explain is an error, by as
+/// much as the sensor sees the patch unevenly, docs/theory/irradiance-at-a-point.md. Such errors of patches add up in
+/// squares. If a polygon side has four patches or fewer, which symmetry may make alike, all that they reflect is one
+/// where `display` is not known.
 ///
 /// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
 /// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the mesh errors

@@ -15,7 +15,7 @@
 
 namespace patchlight {
 
-/// What the sensors of a scene read: a row for each, group after group, a column for each band, W/m^2.
+/// The readings of the sensors of a scene: a row for each, group after group, a column for each band, W/m^2.
 struct Readings {
   Field irradiance;
   Field standard_error;                      ///< in all
@@ -40,7 +40,7 @@ std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors&
 /// True for a sensor inside a wall, from which nothing but the backs of surfaces is seen: it has no part in statistics.
 bool is_inside_wall(const Readings& readings, std::size_t sensor);
 
-/// What one of the sensors reads.
+/// The reading of one of the sensors.
 SensorValue sensor_value(const Readings& readings, std::size_t sensor);
 
 /// "lx" or "W/m^2".
@@ -50,8 +50,8 @@ const char* sensor_unit(const Readings& readings);
 /// must be given.
 double daylight_factor(const Readings& readings, std::size_t sensor);
 
-/// What the sensors of one group read, in sensor_unit(). Those inside walls count in the first two numbers alone; where
-/// all are, the others are not numbers.
+/// The readings of the sensors of one group, in sensor_unit(). Those inside walls count in the first two numbers alone;
+/// where all are, the others are not numbers.
 struct GroupReadings {
   std::string name;
   std::size_t sensors = 0;

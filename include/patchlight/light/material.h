@@ -17,22 +17,22 @@ using MaterialIndex = std::uint32_t;
 /// The index of refraction of window glass.
 inline constexpr double usual_index = 1.52;
 
-/// What a model file says of a material that it makes a pane or a mirror.
+/// The statements of a model file about a material that it makes a pane or a mirror.
 struct StatedSurface {
   std::string by;             ///< the statement, for messages: "d 0.3"
   Spectrum matt_reflectance;  ///< what the surface reflects diffusely if it is taken for opaque and matt
   Spectrum matt_exitance{};   ///< what it emits then, W/m^2; empty: as much as otherwise
 };
 
-/// A picture on surfaces, as wide and as high as 1 in its coordinates: u runs from its left to its right, v from its
-/// top to its bottom.
+/// A picture on surfaces. In its coordinates it has the width and the height 1: u runs from its left to its right, v
+/// from its top to its bottom.
 struct Texture {
   std::uint32_t width = 0;  ///< texels, 1 or more
   std::uint32_t height = 0;
   std::vector<std::array<float, 3>> texels;  ///< linear RGB with Rec. 709 primaries, row by row from the top
 };
 
-/// What stands beyond the edges of a picture.
+/// How a picture continues beyond its edges.
 enum class Wrap : std::uint8_t {
   repeat,  ///< the picture again
   mirror,  ///< the picture mirrored, and so on by turns
@@ -47,13 +47,13 @@ struct TexturedReflectance {
   std::array<Wrap, 2> wrap{};            ///< beyond u and beyond v of 0 to 1
 };
 
-/// What is known of a material by wavelength; null where its spectrum of colours counts.
+/// The spectra of a material by wavelength; null where its spectrum of colors counts.
 struct MaterialSpectra {
   std::shared_ptr<const SampledSpectrum> reflectance{};
   std::shared_ptr<const SampledSpectrum> specular_reflectance{};
   std::shared_ptr<const SampledSpectrum> transmittance{};
   std::shared_ptr<const SampledSpectrum> diffuse_transmittance{};
-  std::shared_ptr<const SampledSpectrum> light{};  ///< how what it emits is spread; any multiple of it
+  std::shared_ptr<const SampledSpectrum> light{};  ///< the spectral distribution of its emission; any multiple of it
 };
 
 /// A surface that scatters diffusely (Lambertian), and may let light through or reflect it as a mirror besides; all

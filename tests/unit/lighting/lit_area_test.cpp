@@ -1,6 +1,5 @@
-#include "lighting/lit_area.h"
-
 #include "base/sampling.h"
+#include "lighting/shades.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
