@@ -6,7 +6,6 @@
 #include "gather/facets.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
-#include "scene/weld.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

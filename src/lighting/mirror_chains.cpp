@@ -3,7 +3,7 @@
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
 #include "lighting/mirrored_sources.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 
 #include <algorithm>
 #include <array>

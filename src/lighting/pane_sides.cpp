@@ -1,6 +1,6 @@
 #include "lighting/pane_sides.h"
 
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 
 namespace patchlight {
 

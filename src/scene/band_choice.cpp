@@ -1,4 +1,3 @@
-#include "scene/band_choice.h"
 
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
@@ -12,23 +11,11 @@
 namespace patchlight {
 namespace {
 
-// How many materials stand for all where light is reflected twice, and three times.
-constexpr std::size_t most_in_pairs = 40;
-constexpr std::size_t most_in_triples = 12;
-
-// Light of so many kinds is looked at; those of further lamps are between these, or as rare.
-constexpr std::size_t most_lights = 12;
-
 constexpr std::array<Eigen::Index, 16> series = {4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 64, 80, 100, 133, 200};
 
-// Beyond these the eye sees little: the bands at either end are wider.
-constexpr double first_full = 400;
-constexpr double last_full = 720;
-
+// The eye sees little beyond 400 and 720 nm: the bands at either end are wider.
 std::vector<double> edges_of(Eigen::Index number) {
-  std::vector<double> edges;
-  for (Eigen::Index k = 0; k <= number; ++k)
-    edges.push_back(first_full + (last_full - first_full) * static_cast<double>(k) / static_cast<double>(number));
+  std::vector<double> edges = equal_edges(number, 400, 720);
   edges.front() = shortest_wavelength;
   edges.back() = longest_wavelength;
   return edges;
@@ -36,7 +23,7 @@ std::vector<double> edges_of(Eigen::Index number) {
 
 struct Colours {
   std::vector<Cells> lights;
-  std::vector<Cells> shares;  // of what reflects or lets through
+  std::vector<Cells> shares;  // reflectances and transmittances
 };
 
 Colours colours_of(const Scene& scene) {
@@ -46,7 +33,7 @@ Colours colours_of(const Scene& scene) {
       scene,
       [&](const Spectrum& rgb, const SampledSpectrum* spectrum) {
         const Cells share = share_in_cells(rgb, spectrum);
-        // A grey one has no colour of its own.
+        // A gray one has no color of its own.
         if (share.maxCoeff() > share.minCoeff()) colours.shares.push_back(share);
       },
       [](const Spectrum&, const SampledSpectrum*) {});
@@ -65,7 +52,7 @@ class LightInBands {
     in_bands_ *= white_.y() / luminance(in_bands_, bands);
   }
 
-  // How far the colour of what is left of it is off.
+  // The color error of the share that is left of it.
   double error_of(const Cells& share, const Spectrum& in_bands) const {
     return colour_difference(lab_of(xyz_of_cells(light_ * share), white_),
                              lab_of(xyz_of(in_bands_ * in_bands, bands_), white_));
@@ -78,7 +65,7 @@ class LightInBands {
   Eigen::Vector3d white_;
 };
 
-// What is reflected once, with how far it is off, the farthest first.
+// The shares by the error of the color reflected once, the largest first.
 std::vector<std::pair<double, std::size_t>> by_error(const LightInBands& light, const std::vector<Cells>& shares,
                                                      const std::vector<Spectrum>& in_bands) {
   std::vector<std::pair<double, std::size_t>> order;
@@ -94,13 +81,14 @@ double worst_error(const LightInBands& light, const std::vector<Cells>& shares, 
   double worst = light.error_of(Cells::Ones(), Spectrum::Ones(bands));
   const std::vector<std::pair<double, std::size_t>> order = by_error(light, shares, in_bands);
   if (!order.empty()) worst = std::max(worst, order[0].first);
-  for (std::size_t i = 0; i < std::min(order.size(), most_in_pairs); ++i) {
+  // 40 materials stand for all where light is reflected twice, 12 where it is reflected three times.
+  for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), 40); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       const std::size_t a = order[i].second, b = order[j].second;
       const Cells twice = shares[a] * shares[b];
       const Spectrum twice_in_bands = in_bands[a] * in_bands[b];
       worst = std::max(worst, light.error_of(twice, twice_in_bands));
-      for (std::size_t k = 0; k <= j && i < most_in_triples; ++k) {
+      for (std::size_t k = 0; k <= j && i < 12; ++k) {
         const std::size_t c = order[k].second;
         worst = std::max(worst, light.error_of(twice * shares[c], twice_in_bands * in_bands[c]));
       }
@@ -115,7 +103,8 @@ double error_with(const Colours& colours, const std::vector<double>& edges_nm) {
   std::vector<Spectrum> in_bands;
   for (const Cells& share : colours.shares) in_bands.push_back(to.mean_of(share));
   double worst = 0;
-  for (std::size_t k = 0; k < std::min(colours.lights.size(), most_lights); ++k) {
+  // The light of further lamps is between these 12, or as rare.
+  for (std::size_t k = 0; k < std::min<std::size_t>(colours.lights.size(), 12); ++k) {
     const LightInBands light(colours.lights[k], to, bands);
     worst = std::max(worst, worst_error(light, colours.shares, in_bands, static_cast<Eigen::Index>(bands.size())));
   }

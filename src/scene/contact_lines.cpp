@@ -1,7 +1,6 @@
 #include "patchlight/scene/contact_lines.h"
 
 #include "base/parallel.h"
-#include "scene/bent_faces.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/triangulate.h"
@@ -17,12 +16,6 @@
 
 namespace patchlight {
 namespace {
-
-constexpr double largest_gap_of_scene = 0.02;   // of the root of the area of all faces
-constexpr double largest_gap_of_polygon = 0.1;  // of the root of its own
-
-// Two faces go on from one to the other over their edge if neither rises more steeply there.
-constexpr double least_slope_cosine = 0.1;
 
 // An edge between two vertices with one of the polygons that have it.
 struct SharedEdge {
@@ -83,7 +76,7 @@ struct ContactSearch {
 
 Ground ContactSearch::ground_of(PolygonIndex polygon) const {
   std::vector<Point> corners = corner_points(scene, polygon);
-  const double reach = std::min(largest_gap, largest_gap_of_polygon * std::sqrt(tree.face(polygon).area));
+  const double reach = std::min(largest_gap, 0.1 * std::sqrt(tree.face(polygon).area));
   const bool convex = patchlight::is_convex(corners);
   return {polygon, std::move(corners),       tree.face(polygon).normal, reach,
           convex,  kept.front[polygon] != 0, kept.back[polygon] != 0};
@@ -125,7 +118,8 @@ bool ContactSearch::goes_on(const Ground& ground, PolygonIndex face, std::size_t
   const Point& to = scene.vertices[corners[(corner + 1) % corners.size()]];
   const double one = way_in(ground, tree.face(face), from, to);
   const double two = (same_way ? 1 : -1) * way_in(ground, tree.face(other), from, to);
-  return std::min(std::abs(one), std::abs(two)) > least_slope_cosine && one * two < 0;
+  // Neither face may rise too steeply there.
+  return std::min(std::abs(one), std::abs(two)) > 0.1 && one * two < 0;
 }
 
 bool ContactSearch::is_along_outline(const Ground& ground, const ContactLine& line) const {
@@ -201,24 +195,20 @@ void ContactSearch::add_crossing(const Ground& ground, PolygonIndex face, LinesO
 LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   const Ground ground = ground_of(polygon);
   if (!ground.front && !ground.back) return {};
-  constexpr double any_tilt = 3;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const Vector margin = Vector::Constant(std::max(ground.reach, touch));
-  const Box& box = tree.face(polygon).box;
-  const FaceQuery query{Box(box.min() - margin, box.max() + margin), infinite, ground.normal, any_tilt, 0, infinite};
+  const double margin = std::max(ground.reach, touch);
   std::vector<PolygonIndex> near;
-  tree.for_each(query, [&](PolygonIndex face) {
+  tree.for_each(FaceQuery{.box = with_margin(tree.face(polygon).box, margin)}, [&](PolygonIndex face) {
     const Box& other = tree.face(face).box;
     const double half = ground.normal.cwiseAbs().dot(other.sizes()) / 2;
-    if (face != polygon && is_bent[face] == 0 && std::abs(ground.height(other.center())) <= half + margin.x())
+    if (face != polygon && is_bent[face] == 0 && std::abs(ground.height(other.center())) <= half + margin)
       near.push_back(face);
   });
   std::sort(near.begin(), near.end());
 
   LinesOnFaces lines;
   for (const PolygonIndex face : near) {
-    double lowest = infinite;
-    double highest = -infinite;
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
     for (const std::uint32_t corner : scene.polygons[face].corners) {
       lowest = std::min(lowest, ground.height(scene.vertices[corner]));
       highest = std::max(highest, ground.height(scene.vertices[corner]));
@@ -233,19 +223,16 @@ LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
   return lines;
 }
 
-// More are those of a damaged model whose faces cross anywhere: finding them takes minutes, and none is followed.
-constexpr double most_lines_found = 2e6;
-
-// How many lines there will be, as some polygons tell. A large one on which all others stand, as a floor, tells nothing
-// of these.
+// The number of lines, estimated from some polygons. A large one on which all others stand, for example a floor, does
+// not represent these.
 double expected_lines(const ContactSearch& search, const std::vector<std::uint8_t>& is_bent) {
   constexpr std::size_t looked_at = 512;
-  constexpr std::size_t most_of_one = 1000;
   const std::size_t step = is_bent.size() / looked_at;
   if (step < 2) return 0;
   std::vector<std::size_t> found(looked_at, 0);
   parallel_for(looked_at, [&](std::size_t k) {
-    if (is_bent[k * step] == 0) found[k] = std::min(most_of_one, search.on(static_cast<PolygonIndex>(k * step)).size());
+    if (is_bent[k * step] == 0)
+      found[k] = std::min<std::size_t>(1000, search.on(static_cast<PolygonIndex>(k * step)).size());
   });
   return static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}) * step);
 }
@@ -263,15 +250,11 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   double area = 0;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) area += tree.face(p).area;
   const std::vector<std::uint8_t> is_bent = bent_faces(scene);
-  const ContactSearch search{scene,
-                             kept,
-                             std::move(tree),
-                             edges_of(scene),
-                             is_bent,
-                             weld_distance(scene),
-                             largest_gap_of_scene * std::sqrt(area)};
+  const ContactSearch search{
+      scene, kept, std::move(tree), edges_of(scene), is_bent, weld_distance(scene), 0.02 * std::sqrt(area)};
   ContactLines lines;
-  lines.everywhere = expected_lines(search, is_bent) > most_lines_found;
+  // A damaged model has more, where faces cross anywhere: finding them takes minutes, and none is followed.
+  lines.everywhere = expected_lines(search, is_bent) > 2e6;
   if (lines.everywhere) return lines;
   std::vector<LinesOnFaces> found(scene.polygons.size());
   parallel_for(found.size(), [&](std::size_t p) {

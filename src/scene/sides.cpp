@@ -3,11 +3,9 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
-#include "scene/dark_solids.h"
+#include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
-#include "scene/half_spaces.h"
-#include "scene/lamp_places.h"
 #include "scene/model_face.h"
 #include "scene/shells.h"
 #include "scene/simple_polygon.h"
@@ -29,12 +27,7 @@
 namespace patchlight {
 namespace {
 
-constexpr std::size_t most_rim_corners = 1000;
 constexpr std::size_t most_lid_triangles = 1000;
-constexpr std::size_t most_corners_in_planes = 64;
-
-// How far the unit normals of a rim and of a face under it may differ; corners decide whether they share a plane.
-constexpr double largest_tilt = 0.05;
 
 // The rims of one shell as outlines of what would close it, which walk along each edge against its polygon. Nothing
 // where rims meet in a vertex.
@@ -84,13 +77,12 @@ bool FacesUnderRims::shares_plane(PolygonIndex polygon, const std::vector<Point>
 // Do opaque faces of other shells fill the outline? What is left of it beside them is then narrower than `near`.
 bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex shell) const {
   FlatFace rim = flat_face(outline);
-  const Vector margin = Vector::Constant(near);
-  const FaceQuery query{Box(rim.box.min() - margin, rim.box.max() + margin),
-                        std::numeric_limits<double>::infinity(),
-                        rim.normal,
-                        largest_tilt,
-                        rim.normal.dot(outline[0]),
-                        extent};
+  // The corners decide whether faces share its plane.
+  const FaceQuery query{.box = with_margin(rim.box, near),
+                        .normal = rim.normal,
+                        .tilt = 0.05,
+                        .offset = rim.normal.dot(outline[0]),
+                        .tolerance = extent};
   std::vector<std::vector<Point>> left;
   for (const Triangle& triangle : triangles_of(outline)) left.emplace_back(triangle.begin(), triangle.end());
   std::size_t triangles = 0;
@@ -133,7 +125,7 @@ std::optional<std::vector<Triangle>> FacesUnderRims::lids_over(std::vector<Point
     lids.insert(lids.end(), triangles.begin(), triangles.end());
   };
   while (!can_close(outline, shell)) {
-    if (outline.size() > most_corners_in_planes) return std::nullopt;
+    if (outline.size() > 64) return std::nullopt;
     std::vector<Point> longest;
     std::size_t begin = 0;
     for (std::size_t first = 0; first < outline.size(); ++first) {
@@ -154,7 +146,7 @@ std::optional<std::vector<Triangle>> FacesUnderRims::lids_over(std::vector<Point
 
 // Triangles over all rims of a shell; nothing when one of them stays open.
 std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimEdge>& edges) const {
-  if (edges.size() > most_rim_corners) return std::nullopt;
+  if (edges.size() > 1000) return std::nullopt;
   const auto outlines = outlines_of(scene, edges);
   if (!outlines) return std::nullopt;
   std::vector<Triangle> lids;
@@ -240,9 +232,8 @@ Diagnostics notes_on(const Count& count) {
 // What is said of luminaires just outside of a room without any other: most often their position is wrong by the
 // thickness of a ceiling. A room is a closed solid that looks inward and is most of the scene.
 std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) {
-  constexpr double thickest = 1;  // m
   const double half = bounds(scene).volume() / 2;
-  double least = thickest;
+  double least = 1;  // m
   const Luminaire* nearest = nullptr;
   for (const Solid& solid : dark) {
     if (!solid.fronts_face_inside || solid.box.volume() <= half) continue;
@@ -261,11 +252,8 @@ std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) 
 
 std::string name_of_solid(const Scene& scene, const Solid& solid) {
   const Polygon& first = scene.polygons[solid.polygons.front()];
-  return std::string("'")
-      .append(group_name(scene, first.group))
-      .append("' (")
-      .append(place_of(scene, first))
-      .append(")");
+  const std::string group = group_name(scene, first.group);
+  return "'" + group + "' (" + place_of(scene, first) + ")";
 }
 
 // At 2 * polygon + side.
@@ -291,12 +279,9 @@ KeptSides with_sides(KeptSides kept, const SideMask& mask, bool wanted) {
 SideMask sides_beside(const Scene& scene, const Box& room) {
   SideMask mask(2 * scene.polygons.size(), 0);
   const double extent = extent_of(scene);
-  const Vector touching = Vector::Constant(1e-6 * extent);
-  const Box inner(room.min() + touching, room.max() - touching);
+  const Box inner = with_margin(room, -tolerance_of_coordinates * extent);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    Box box;
-    for (const std::uint32_t corner : scene.polygons[p].corners) box.extend(scene.vertices[corner]);
-    if (box.intersects(inner)) continue;
+    if (polygon_box(scene, p).intersects(inner)) continue;
     for (const Side side : {Side::front, Side::back})
       mask[at(p, side)] = !room.contains(point_before(scene, p, side, extent));
   }
@@ -314,13 +299,10 @@ SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vect
   return mask;
 }
 
-// How far over a plane a luminaire may lie by rounding, as a share of the extent.
-constexpr double plane_rounding = 1e-12;
-
 bool shines_before(const Luminaire& luminaire, const Point& on_plane, const Vector& normal, double extent) {
   const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
   const double height = normal.dot(luminaire.position - on_plane) + (sphere != nullptr ? sphere->radius : 0);
-  return height > plane_rounding * extent;
+  return height > tolerance_of_arithmetic * extent;
 }
 
 // The sides before which nothing lies and no light is: they see nothing. Lamps shine all the same.
@@ -369,14 +351,8 @@ DarkSides with_whole_sheets(DarkSides dark, const Scene& scene) {
   return dark;
 }
 
-// What is lit of a solid.
-struct Lit {
-  bool inside = false;
-  bool outside = false;
-};
-
-// Clear faces and sheets let light through, in and out.
-Lit lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
+// The sides of a solid that are lit. Clear faces and sheets let light through, in and out.
+LampPlaces lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
   const bool from_outside = daylight || lamps.outside;
   const bool gets_out = lamps.inside && solid.has_opening;
   return {lamps.inside || (from_outside && solid.has_opening), !lamps.inside || from_outside || gets_out};
@@ -480,7 +456,7 @@ KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_th
 double kept_area(const Scene& scene, const KeptSides& sides) {
   double area = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    area += (sides.front[p] + sides.back[p]) * area_vector(corner_points(scene, p)).norm();
+    area += (sides.front[p] + sides.back[p]) * polygon_area(scene, p);
   }
   return area;
 }

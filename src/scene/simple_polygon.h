@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
 #include <array>
 #include <cstdint>
@@ -35,5 +36,15 @@ std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pi
 
 /// The polygon in triangles, provided that they cover it without turning over: none has negative area.
 std::optional<std::vector<std::array<std::uint32_t, 3>>> proper_triangles(std::span<const Point> polygon);
+
+/// What becomes of one polygon.
+struct Pieces {
+  std::vector<Polygon> polygons;         ///< simple and planar, with area
+  std::vector<Point> new_vertices;       ///< numbered after those of the scene
+  std::optional<DiagnosticCode> defect;  ///< zero_area, self_intersecting or non_planar; nothing when it stays whole
+};
+
+/// Cuts a polygon of the scene into what the mesher can use. Pieces narrower than `width` are left out.
+Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width);
 
 }  // namespace patchlight

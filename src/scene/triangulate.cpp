@@ -1,7 +1,7 @@
 #include "scene/triangulate.h"
 
-#include "scene/box_row.h"
-#include "scene/turn.h"
+#include "base/tolerances.h"
+#include "scene/face_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,6 @@ namespace {
 using IndexTriangle = std::array<std::uint32_t, 3>;
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
-
-bool contains(const Vector& normal, const Point& a, const Point& b, const Point& c, const Point& x) {
-  return turn(normal, a, b, x) >= 0 && turn(normal, b, c, x) >= 0 && turn(normal, c, a, x) >= 0;
-}
 
 // Does the direction from b to x lead into the angle at b between the edges to c and to a?
 bool is_inside_angle(const Vector& normal, const Point& a, const Point& b, const Point& c, const Point& x) {
@@ -148,10 +144,9 @@ EarClipping::EarClipping(std::span<const Point> polygon)
       is_ear_(polygon.size(), 0),
       at_same_place_(same_places(polygon)),
       hindered_by_(polygon.size(), none) {
-  constexpr double relative = 1e-12;
   Box whole;
   for (const Point& corner : polygon) whole.extend(corner);
-  rounding_ = relative * normal_.norm() * whole.diagonal().norm();
+  rounding_ = tolerance_of_arithmetic * normal_.norm() * whole.diagonal().norm();
   const auto n = static_cast<std::uint32_t>(polygon.size());
   for (std::uint32_t k = 0; k < n; ++k) {
     before_[k] = (k + n - 1) % n;
@@ -251,13 +246,12 @@ std::vector<IndexTriangle> EarClipping::triangles() {
 
 // True when nothing but an edge of a triangle lies before a line, up to the rounding of clip_to_half_space().
 bool lies_beyond(const Triangle& triangle, const Point& on_line, const Vector& inward) {
-  constexpr double rounding = 1e-9;
   const double length = inward.norm();
   int on_it = 0;
   for (const Point& corner : triangle) {
     const Vector offset = corner - on_line;
     const double height = inward.dot(offset);
-    const double nothing = rounding * length * offset.norm();
+    const double nothing = tolerance_of_shapes * length * offset.norm();
     if (height > nothing) return false;
     on_it += height >= -nothing;
   }
@@ -297,6 +291,18 @@ std::vector<Triangle> triangles_of(std::span<const Point> polygon) {
   return triangles;
 }
 
+Point inner_point(std::span<const Point> polygon) {
+  double largest = 0;
+  Point middle = polygon[0];
+  for (const auto& [a, b, c] : triangles_of(polygon)) {
+    const double area = (b - a).cross(c - a).norm();
+    if (area <= largest) continue;
+    largest = area;
+    middle = (a + b + c) / 3;
+  }
+  return middle;
+}
+
 bool is_convex(std::span<const Point> polygon) {
   const Vector normal = area_vector(polygon);
   const std::size_t n = polygon.size();
@@ -312,9 +318,8 @@ std::vector<IndexTriangle> triangulate(std::span<const Point> polygon) {
     if (shorter_02) return {{0, 1, 2}, {0, 2, 3}};
     return {{1, 2, 3}, {1, 3, 0}};
   }
-
-  constexpr std::size_t few = 32;  // from about here on the trees pay
-  return polygon.size() <= few ? triangles_of_few(polygon) : EarClipping(polygon).triangles();
+  // The trees pay from about 32 corners on.
+  return polygon.size() <= 32 ? triangles_of_few(polygon) : EarClipping(polygon).triangles();
 }
 
 }  // namespace patchlight

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,14 @@ enum class Projection : std::uint8_t {
 /// "perspective", "orthographic", "angular", "hemispherical" or "panorama", as in scene files.
 const char* name_of(Projection projection);
 
+/// The projection of that name; nothing for other names.
+std::optional<Projection> projection_named(const std::string& name);
+
+/// The vertical field of view of a camera of which none is stated, and the largest one, degrees. A perspective stays
+/// below it.
+double usual_field_of_view(Projection projection);
+double largest_field_of_view(Projection projection);
+
 /// Where a picture is taken from.
 struct Camera {
   Point eye;
@@ -79,6 +88,9 @@ struct Camera {
   Projection projection = Projection::perspective;
   double height = 0;  ///< of what an orthographic picture shows, metres
 };
+
+/// False when the projection of a camera cannot have its field of view, or its height.
+bool has_extent(const Camera& camera);
 
 /// A material that may be meant as a lamp.
 struct LampHint {
@@ -145,8 +157,15 @@ Bands bands_of(const Scene& scene);
 /// The diagnostics that cannot make all results wrong.
 Diagnostics remarks_of(const Scene& scene);
 
-/// The corner points of a polygon.
+/// The corner points of a polygon, or of an outline of vertices.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);
+std::vector<Point> corner_points(const Scene& scene, std::span<const std::uint32_t> outline);
+
+/// The area of a polygon, m^2.
+double polygon_area(const Scene& scene, PolygonIndex polygon);
+
+/// The box around a polygon.
+Box polygon_box(const Scene& scene, PolygonIndex polygon);
 
 /// The unit normal of a polygon's front side; zero for a polygon without area.
 Vector front_normal(const Scene& scene, PolygonIndex polygon);
