@@ -192,7 +192,7 @@ Box main_bounds(const Scene& scene, const std::vector<double>& areas, double cap
   return most_extents * main.diagonal().norm() < all.diagonal().norm() ? all : main;
 }
 
-// How far the corners of a polygon are from lying in one plane, metres.
+// How far the corners of a polygon are from lying in one plane, meters.
 double bend_of(const Scene& scene, PolygonIndex polygon) {
   const Vector normal = front_normal(scene, polygon);
   double lowest = 0;

@@ -4,9 +4,6 @@
 #include "scene/extent.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <numeric>
 #include <utility>
 

@@ -97,7 +97,7 @@ struct FaceQuery {
 /// place, for queries of the faces in a box.
 enum class FaceOrder : std::uint8_t { by_direction, by_place };
 
-/// A tree over faces. O(n log n) to build. The order changes what a search costs, and in which order it visits.
+/// A tree over faces. O(n log n) to build. The order decides the cost of a search, and the order of its visits.
 class FaceTree {
  public:
   explicit FaceTree(std::vector<FlatFace> faces, FaceOrder order = FaceOrder::by_direction);

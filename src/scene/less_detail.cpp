@@ -168,7 +168,7 @@ std::optional<Polygon> joined(const Scene& scene, const Loops& loops, const std:
   const auto is_quadrilateral = [&scene](PolygonIndex p) { return scene.polygons[p].corners.size() == 4; };
   if (std::all_of(members.begin(), members.end(), is_quadrilateral)) return std::nullopt;
   Polygon whole = scene.polygons[members.front()];
-  // Differences of neighbours add up.
+  // Differences of neighbors add up.
   if (!std::all_of(members.begin(), members.end(),
                    [&](PolygonIndex p) { return continue_pictures(scene, whole, scene.polygons[p]); }))
     return std::nullopt;

@@ -12,14 +12,14 @@ namespace patchlight {
 /// Normals are kept within 1e-4 radians. Pure; O(n log n) for n corners.
 Scene with_joined_faces(Scene scene);
 
-/// The scene without what is smaller than `detail` metres. Of each shell of opaque faces without a lamp, as shells_of()
-/// has it:
+/// The scene without details smaller than `detail` meters. A shell of opaque faces without a lamp, see shells_of(),
+/// becomes
 /// - nothing, when it fits into a cube of that size;
 /// - a box of six faces in its place, when the shell is closed, without a hole through it, not thicker than 1 m, and
 ///   has more faces; when no vertex lies farther than `detail` inside of the box, none of the box's sides is left free
 ///   by more than a rim of that width, and nothing else is inside. Its material is that of the faces, or a new one with
 ///   their mean reflectance.
-/// A note tells how much of the area went and how much is boxes. Pure; O(n log n) for n corners.
+/// A note gives the shares of the area that went and that is boxes. Pure; O(n log n) for n corners.
 Scene with_less_detail(Scene scene, double detail);
 
 }  // namespace patchlight

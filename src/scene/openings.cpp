@@ -52,7 +52,7 @@ bool outlines_meet(const Scene& scene, const Loop& a, const Loop& b, const Vecto
   return false;
 }
 
-bool contains(const std::vector<Point>& outline, const Point& point) {
+bool encloses(const std::vector<Point>& outline, const Point& point) {
   const std::vector<Triangle> triangles = triangles_of(outline);
   const Vector normal = area_vector(outline);
   return std::any_of(triangles.begin(), triangles.end(),
@@ -107,7 +107,7 @@ std::optional<Loop> with_holes(const Scene& scene, const Loop& wall, const std::
   for (Loop hole : panes) {
     if (area_vector(corner_points(scene, hole)).dot(normal) > 0) std::reverse(hole.begin(), hole.end());
     if (outlines_meet(scene, wall, hole, normal, near)) return std::nullopt;
-    if (!contains(outline, scene.vertices[hole.front()])) return std::nullopt;
+    if (!encloses(outline, scene.vertices[hole.front()])) return std::nullopt;
     for (const Loop& other : holes) {
       if (outlines_meet(scene, other, hole, normal, near)) return std::nullopt;
     }
@@ -146,7 +146,7 @@ std::vector<Loop> panes_over(const Scene& scene, const Coverings& coverings, Pol
   return panes;
 }
 
-// A wall without what lies under the panes.
+// A wall without the parts under the panes.
 Pieces opened(const Scene& scene, const Polygon& wall, const std::vector<Loop>& panes, double near) {
   Pieces pieces;
   Polygon part = wall;

@@ -1,7 +1,6 @@
 #include "scene/photometric_web.h"
 
 #include "patchlight/scene/daylight.h"
-#include "patchlight/scene/luminaire.h"
 
 #include "light/photometry.h"
 

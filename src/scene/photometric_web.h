@@ -33,7 +33,7 @@ struct PhotometricWeb {
   std::vector<double> vertical{};    ///< degrees, ascending
   std::vector<double> horizontal{};  ///< degrees, ascending; without angles that follow from symmetry
   std::vector<double> candela{};     ///< at horizontal h and vertical v: [h * vertical.size() + v], all factors applied
-  Vector opening = Vector::Zero();   ///< luminous width, length and height in metres; 0 for a point
+  Vector opening = Vector::Zero();   ///< luminous width, length and height in meters; 0 for a point
   OpeningShape shape = OpeningShape::box;
   double lamp_lumens = 0;             ///< of all lamps together, lm; 0 with absolute photometry, which does not say
   double watts = 0;                   ///< electrical input

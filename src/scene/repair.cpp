@@ -1,7 +1,5 @@
 #include "scene/repair.h"
 
-#include "patchlight/scene/scene.h"
-
 #include "scene/extent.h"
 #include "scene/model_face.h"
 #include "scene/openings.h"
@@ -38,7 +36,7 @@ struct Key {
   bool reversed = false;
 };
 
-// Of all rotations the one that comes first.
+// The rotation that comes first.
 Loop first_rotation(const Loop& loop) {
   const std::uint32_t least = *std::min_element(loop.begin(), loop.end());
   Loop best;
@@ -97,7 +95,7 @@ Scene number_faces(Scene scene) {
   return scene;
 }
 
-// A stray vertex tells nothing of how large details are.
+// A stray vertex shall not decide how large details are.
 Scene report_far_faces(Scene scene) {
   Faces far;
   const Box main = main_bounds(scene);
@@ -166,7 +164,7 @@ std::vector<std::uint32_t> without_spikes(std::vector<std::uint32_t> corners, co
       ++sound;
       continue;
     }
-    // Look again at the corner before, whose neighbour is another one now.
+    // Look again at the corner before, whose neighbor is another one now.
     corners.erase(corners.begin() + signed_place(k));
     k = (k + n - 2) % (n - 1);
     sound = 0;
@@ -259,15 +257,6 @@ Scene weigh_losses(Scene scene) {
   return scene;
 }
 
-std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {
-  std::vector<Polygon> kept;
-  kept.reserve(polygons.size());
-  for (std::size_t p = 0; p < polygons.size(); ++p) {
-    if (marked[p] == 0) kept.push_back(std::move(polygons[p]));
-  }
-  return kept;
-}
-
 Scene merge_coincident(Scene scene) {
   const Coincidence found = find_coincident(scene);
   Faces duplicates, covered, two_sided, opened;
@@ -294,7 +283,8 @@ Scene merge_coincident(Scene scene) {
       covered.push_back(model_face(scene, second));
     }
   }
-  scene.polygons = without_marked(std::move(scene.polygons), found.is_second);
+  std::size_t place = 0;
+  std::erase_if(scene.polygons, [&](const Polygon&) { return found.is_second[place++] != 0; });
   const std::string others =
       other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
   scene = with_problem(std::move(scene), DiagnosticCode::overlapping_faces, std::move(opened),

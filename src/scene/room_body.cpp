@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -35,7 +33,7 @@ bool is_inside(const std::vector<std::vector<Point>>& faces, const Point& point,
   return crossings % 2 == 1;
 }
 
-// Metres.
+// Meters.
 constexpr std::array<double, 6> distances = {0.01, 0.1, 0.2, 0.3, 0.4, 0.5};
 
 // The room that is nearest to the point along a direction.
@@ -61,7 +59,7 @@ std::vector<PolygonIndex> spread_evenly(const std::vector<PolygonIndex>& polygon
   return chosen;
 }
 
-// One polygon of each shell but that of the hull, without what lies far from the scene.
+// One polygon of each shell but that of the hull, and but those far from the scene.
 std::vector<PolygonIndex> other_shells(const Scene& scene, const Shells& shells, const Solid& hull) {
   const std::vector<PolygonIndex> far = far_polygons(scene);
   const PolygonIndex of_hull = shells.shell[hull.polygons.front()];
@@ -73,7 +71,7 @@ std::vector<PolygonIndex> other_shells(const Scene& scene, const Shells& shells,
   return others;
 }
 
-// Is all else inside? What lies on the hull has one of its sides inside.
+// Is all else inside? A polygon on the hull has one of its sides inside.
 bool holds_all_else(const Scene& scene, const Shells& shells, const Solid& hull, double extent) {
   const std::vector<PolygonIndex> others = spread_evenly(other_shells(scene, shells, hull), most_points(hull));
   return std::all_of(others.begin(), others.end(), [&](PolygonIndex p) {
@@ -158,11 +156,8 @@ bool is_room(const Scene& scene, const Solid& hull) {
 
 std::optional<Point> place_under_ceiling(const Scene& scene, const Solid& room) {
   const double height = room.box.sizes().dot(scene.up.cwiseAbs());
-  // Over the middle.
   const Point over_middle = room.box.center() + (0.5 - under_top) * height * scene.up;
   if (holds(room, over_middle)) return over_middle;
-
-  // Under the largest part of the ceiling.
   for (const CeilingTriangle& part : largest_of_ceiling(scene, room, most_points(room))) {
     const Point below = part.middle - under_top * height * scene.up;
     if (holds(room, below)) return below;

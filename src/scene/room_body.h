@@ -16,7 +16,7 @@ class RoomBody {
   explicit RoomBody(const std::vector<std::vector<Point>>& faces);
   /// True inside: two of three rays from there cross the faces an odd number of times. O(n) for n corners.
   bool holds(const Point& point) const;
-  /// How far from its walls a point is to be for rounding not to matter, metres.
+  /// How far from its walls a point is to be for rounding not to matter, meters.
   double step() const;
 
  private:
@@ -25,12 +25,12 @@ class RoomBody {
 };
 
 /// Per room of the scene the area of the clear faces, both sides of a pane of glass each, that have it before them or
-/// behind them, and no room on their other side, within half a metre, as panes may stand in the thick of a wall; m^2.
+/// behind them, and no room on their other side, within half a meter, as panes may stand in the thick of a wall; m^2.
 /// O(openings x corners of the rooms).
 std::vector<double> window_areas(const Scene& scene);
 
 /// The closed solid without clear faces and sheets that holds all of a scene, if there is one: no daylight gets into
-/// it. What lies far from the scene, far_polygons(), does not count. Of each other shell one point is looked at, of
+/// it. The far_polygons() do not count. One point of each other shell is tested, of
 /// so many, spread evenly, as take 1e7 tests of a triangle, half a second, and of 16 at least. O(n log n) for n
 /// corners, expected, and these tests for each closed solid as large as the scene.
 std::optional<Solid> sealed_hull(const Scene& scene);

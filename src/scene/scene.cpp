@@ -1,7 +1,6 @@
 #include "patchlight/scene/scene.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/sensor.h"
 
 #include "base/rounded.h"
 #include "base/tolerances.h"
@@ -9,6 +8,7 @@
 #include "scene/model_face.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -30,14 +30,21 @@ void check_bands(const Scene& scene) {
                                    "; expected as many");
 }
 
+// Refuses a material for a finding, which ends with a hint, and names the setting that changes it.
+[[noreturn]] void refuse(const Scene& scene, const Material& material, const std::string& finding,
+                         const std::string& setting) {
+  throw InputError(
+      scene.file, "material '" + material.name + "' has " + finding + "read.settings " + material.name + "." + setting);
+}
+
 // A share of light beside the reflectance, in each band.
 void check_share(const Scene& scene, const Material& material, const Spectrum& values, const std::string& quantity) {
   for (Eigen::Index band = 0; band < values.size(); ++band) {
     if (values[band] >= 0 && values[band] + material.reflectance[band] <= 1) continue;
-    throw InputError(scene.file, "material '" + material.name + "' has " + quantity + " " + shortest(values[band]) +
-                                     " and reflectance " + shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
-                                     material.name + ".reflectance=R,G,B");
+    refuse(scene, material,
+           quantity + " " + shortest(values[band]) + " and reflectance " + shortest(material.reflectance[band]) +
+               "; expected numbers not below 0 whose sum is at most 1\nhint: ",
+           "reflectance=R,G,B");
   }
 }
 
@@ -45,24 +52,23 @@ void check_share(const Scene& scene, const Material& material, const Spectrum& v
 void check_specular_reflectance(const Scene& scene, const Material& material) {
   check_share(scene, material, material.specular_reflectance, "specular reflectance");
   if ((material.specular_reflectance > 0).any() && (material.transmittance > 0).any())
-    throw InputError(scene.file,
-                     "material '" + material.name +
-                         "' has both a specular reflectance and a transmittance; expected one of them, since "
-                         "the index decides the reflection of a clear material\nhint: read.settings " +
-                         material.name + ".specular_reflectance=0");
+    refuse(scene, material,
+           "both a specular reflectance and a transmittance; expected one of them, since the index decides the "
+           "reflection of a clear material\nhint: ",
+           "specular_reflectance=0");
 }
 
 // A sheet scatters all that it does not absorb.
 void check_diffuse_transmittance(const Scene& scene, const Material& material) {
   check_share(scene, material, material.diffuse_transmittance, "diffuse transmittance");
   if (!(material.diffuse_transmittance > 0).any()) return;
-  for (const auto& [other, name] : {std::pair(&material.transmittance, "transmittance"),
-                                    std::pair(&material.specular_reflectance, "specular_reflectance")}) {
-    if (!(*other > 0).any()) continue;
-    throw InputError(scene.file, "material '" + material.name + "' has both a diffuse transmittance and a " + name +
-                                     "; expected one of them, as sheets scatter all that they do not absorb\nhint: "
-                                     "read.settings " +
-                                     material.name + "." + name + "=0");
+  for (const auto& [other, name] : {std::pair(&material.transmittance, std::string("transmittance")),
+                                    std::pair(&material.specular_reflectance, std::string("specular_reflectance"))}) {
+    if ((*other > 0).any())
+      refuse(scene, material,
+             "both a diffuse transmittance and a " + name +
+                 "; expected one of them, as sheets scatter all that they do not absorb\nhint: ",
+             name + "=0");
   }
 }
 
@@ -84,36 +90,29 @@ void check_sheet(const Scene& scene, PolygonIndex index) {
                                                  "hint: read.settings MATERIAL.diffuse_transmittance=R,G,B");
 }
 
-void check_picture(const Scene& scene, const Material& material) {
-  if (!material.texture || !reflects_more_than_all(*material.texture)) return;
-  throw InputError(scene.file, "material '" + material.name +
-                                   "' has a picture that reflects more than 1 in places; expected 0 to 1 everywhere\n"
-                                   "hint: a darker picture or a smaller factor, or read.settings " +
-                                   material.name + ".reflectance=R,G,B");
-}
-
 void check_material(const Scene& scene, const Material& material) {
-  const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
     if (rho >= 0 && rho <= 1) continue;
-    throw InputError(scene.file, name + " has reflectance " + shortest(rho) +
-                                     "; expected 0 to 1 in every band\nhint: fix Kd, or read.settings " +
-                                     material.name + ".reflectance=R,G,B");
+    refuse(scene, material, "reflectance " + shortest(rho) + "; expected 0 to 1 in every band\nhint: fix Kd, or ",
+           "reflectance=R,G,B");
   }
-  check_picture(scene, material);
+  if (material.texture && reflects_more_than_all(*material.texture))
+    refuse(scene, material,
+           "a picture that reflects more than 1 in places; expected 0 to 1 everywhere\n"
+           "hint: a darker picture or a smaller factor, or ",
+           "reflectance=R,G,B");
   check_share(scene, material, material.transmittance, "transmittance");
   check_specular_reflectance(scene, material);
   check_diffuse_transmittance(scene, material);
-  if (!(material.index >= 1 && std::isfinite(material.index))) {
-    throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
-                                     "; expected a number of 1 or more\nhint: read.settings " + material.name +
-                                     ".index=1.52");
-  }
+  if (!(material.index >= 1 && std::isfinite(material.index)))
+    refuse(scene, material,
+           "the index of refraction " + shortest(material.index) + "; expected a number of 1 or more\nhint: ",
+           "index=1.52");
   for (const double exitance : material.exitance) {
     if (exitance >= 0 && std::isfinite(exitance)) continue;
-    throw InputError(scene.file, name + " has exitance " + shortest(exitance) +
-                                     " W/m^2; expected a finite number not below 0\nhint: fix Ke, or read.settings " +
-                                     material.name + ".exitance=R,G,B");
+    refuse(scene, material,
+           "exitance " + shortest(exitance) + " W/m^2; expected a finite number not below 0\nhint: fix Ke, or ",
+           "exitance=R,G,B");
   }
 }
 
@@ -300,19 +299,8 @@ void check(const Scene& scene) {
 }
 
 const char* name_of(Projection projection) {
-  switch (projection) {
-    case Projection::orthographic:
-      return "orthographic";
-    case Projection::angular:
-      return "angular";
-    case Projection::hemispherical:
-      return "hemispherical";
-    case Projection::panorama:
-      return "panorama";
-    case Projection::perspective:
-      break;
-  }
-  return "perspective";
+  constexpr std::array names = {"perspective", "orthographic", "angular", "hemispherical", "panorama"};
+  return names[static_cast<std::size_t>(projection)];
 }
 
 std::optional<Projection> projection_named(const std::string& name) {

@@ -78,12 +78,6 @@ Vector main_direction(const std::vector<Edge>& rim, const Vector& up) {
   return best;
 }
 
-double distance_from(const Edge& edge, const Point& point) {
-  const Vector way = edge[1] - edge[0];
-  const double along = std::clamp((point - edge[0]).dot(way) / way.squaredNorm(), 0.0, 1.0);
-  return (edge[0] + along * way - point).norm();
-}
-
 // Does a ray from the point along x, in the plane of x and y, cross the outline an odd number of times? The two ways of
 // a seam to a hole cancel.
 bool is_inside(const std::vector<Point>& outline, const Point& point, const Vector& x, const Vector& y) {
@@ -100,7 +94,7 @@ bool is_inside(const std::vector<Point>& outline, const Point& point, const Vect
 
 double distance_from(const std::vector<Edge>& rim, const Point& point) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Edge& edge : rim) nearest = std::min(nearest, distance_from(edge, point));
+  for (const Edge& edge : rim) nearest = std::min(nearest, std::sqrt(squared_distance(point, edge[0], edge[1])));
   return nearest;
 }
 
@@ -134,7 +128,7 @@ bool is_level(const std::vector<Point>& face, const Vector& up) {
 using Levels = std::map<double, Floor>;  // by their height, from below
 
 Levels levels_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
-  constexpr double one_height = 1e-3;  // metres
+  constexpr double one_height = 1e-3;  // meters
   Levels levels;
   for (const std::vector<Point>& face : faces) {
     if (!is_level(face, up)) continue;

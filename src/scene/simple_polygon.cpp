@@ -6,10 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 namespace patchlight {
 namespace {
@@ -169,7 +167,7 @@ Vector plane_normal(std::span<const Point> polygon) {
   const double size = spread.trace();
   if (!(size > 0)) return Vector::Zero();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread / size);
-  // The sign of an eigenvector is arbitrary; the vector area of a strip is small, but it tells the front.
+  // The sign of an eigenvector is arbitrary; the vector area of a strip is small, but decides its front.
   const Vector normal = axes.eigenvectors().col(0);
   return normal.dot(area) < 0 ? Vector(-normal) : normal;
 }
@@ -235,7 +233,7 @@ std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pi
   std::vector<std::vector<Point>> left;
   for (std::vector<Point> piece : pieces) {
     const Vector around = area_vector(piece).dot(normal) < 0 ? Vector(-normal) : normal;
-    // Cutting what lies beside the triangle would only break it up.
+    // Cutting a piece beside the triangle would only break it up.
     if (separates(triangle, piece, normal, width) || separates(piece, triangle, around, width)) {
       left.push_back(std::move(piece));
       continue;

@@ -2,7 +2,6 @@
 
 #include "base/tolerances.h"
 #include "scene/face_tree.h"
-#include "scene/triangulate.h"
 
 #include <algorithm>
 #include <array>
@@ -16,10 +15,10 @@
 namespace patchlight {
 namespace {
 
-// Tests of boxes and triangles, some 10 ns each.
+// Tests of boxes and triangles, about 10 ns each.
 constexpr double most_tests = 2e7;
 
-// No vertex lies before a face as seen from inside. What has its corners in a solid lies in it as a whole only then.
+// No vertex lies before a face as seen from inside. Only then a polygon with all corners in a solid lies in it.
 bool is_convex(const Solid& solid) {
   const double tolerance = tolerance_of_coordinates * solid.box.diagonal().norm();
   const double outward = solid.fronts_face_inside ? -1 : 1;

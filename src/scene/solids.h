@@ -5,7 +5,6 @@
 #include "scene/shells.h"
 #include "scene/triangulate.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -51,7 +50,7 @@ std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, 
 
 /// At 2 * polygon + side 1 when the side faces the inside of one of these solids: it belongs to the solid, or
 /// point_before() and the like of all its corners lie within. Looks for at most 2e7 tests of a box or triangle, a
-/// fraction of a second, in the largest solids first; what it does not come to is 0.
+/// fraction of a second, in the largest solids first; the rest is 0.
 std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
 
 /// A source of light as solids see it: the triangles of an emitting side, moved just before it, or a ball around a
@@ -59,7 +58,7 @@ std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells,
 struct LampShape {
   std::vector<Triangle> triangles;
   Point middle = Point::Zero();  ///< a point of it
-  double radius = 0;             ///< of a ball, metres; 0 for one without extent
+  double radius = 0;             ///< of a ball, meters; 0 for one without extent
   Box box;
 };
 
@@ -79,8 +78,8 @@ struct LampPlaces {
   bool outside = false;
 };
 
-/// Of all lamps together. What lies within 5e-7 of the scene's `extent` of the surface counts as inside and outside: no
-/// light is lost for it. O(lamps x triangles of the solid).
+/// The places of all lamps together. Lamps within 5e-7 of the scene's `extent` of the surface count as inside and
+/// outside, so that no light is lost. O(lamps x triangles of the solid).
 LampPlaces places_of(const std::vector<LampShape>& lamps, const Solid& solid, double extent);
 
 /// The dark solids of kept_sides(): bodies that no light gets into. None in a scene without light.

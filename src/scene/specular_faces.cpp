@@ -10,11 +10,6 @@
 #include <utility>
 
 namespace patchlight {
-namespace {
-
-constexpr std::uint32_t not_specular = ~0U;
-
-}  // namespace
 
 std::vector<Pane> panes_of(const Material& material) {
   std::vector<Pane> panes;
@@ -136,7 +131,7 @@ double SpecularFace::kind(Side side) const {
   return reflections_ == Reflections::kept ? -1 : 1 + index_;
 }
 
-// What a mirror keeps is the same at all angles.
+// A mirror keeps the same share at all angles.
 double SpecularFace::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
 
 // Within a step the density is taken as even.

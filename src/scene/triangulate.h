@@ -2,6 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -34,6 +35,13 @@ bool is_convex(std::span<const Point> polygon);
 /// Twice the signed area of a triangle in m^2, positive when it turns left around the unit normal.
 inline double turn(const Vector& normal, const Point& a, const Point& b, const Point& c) {
   return normal.dot((b - a).cross(c - a));
+}
+
+/// The square of the distance of a point to a segment, m^2.
+inline double squared_distance(const Point& point, const Point& from, const Point& to) {
+  const Vector edge = to - from;
+  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+  return (from + t * edge - point).squaredNorm();
 }
 
 /// True when a point of its plane lies in a triangle that turns left around the normal, or on its rim.
