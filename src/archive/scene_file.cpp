@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/output/provenance.h"
+#include "patchlight/scene/scene.h"
 
 #include "archive/file_names.h"
 #include "archive/json_values.h"
@@ -10,7 +11,6 @@
 #include "output/file/whole_file.h"
 #include "plan/survey.h"
 #include "scene/photometric_web.h"
-#include "scene/projection.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
-#include "scene/dark_solids.h"
+#include "scene/solids.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

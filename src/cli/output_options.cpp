@@ -1,6 +1,7 @@
 #include "cli/output_options.h"
 
 #include "patchlight/output/write_result.h"
+#include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "cli/add_option.h"
@@ -9,7 +10,6 @@
 #include "output/image/write_image.h"
 #include "output/image/write_lightmap.h"
 #include "output/vtk/write_points.h"
-#include "scene/projection.h"
 
 #include <algorithm>
 #include <bit>

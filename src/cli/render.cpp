@@ -18,7 +18,7 @@
 #include "output/image/write_lightmap.h"
 #include "page/write_page.h"
 #include "pipeline/world.h"
-#include "scene/limits.h"
+#include "scene/extent.h"
 
 #include <filesystem>
 #include <iostream>

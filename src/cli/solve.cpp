@@ -26,8 +26,8 @@
 #include "pipeline/stage_clock.h"
 #include "plan/check_request.h"
 #include "plan/survey.h"
-#include "scene/limits.h"
-#include "scene/section.h"
+#include "scene/extent.h"
+#include "scene/face_tree.h"
 
 #include <algorithm>
 #include <deque>

@@ -4,7 +4,7 @@
 #include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
-#include "scene/weld.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

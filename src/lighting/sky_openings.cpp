@@ -3,9 +3,8 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/tolerances.h"
-#include "scene/holes.h"
+#include "scene/coverings.h"
 #include "scene/triangulate.h"
-#include "scene/turn.h"
 
 #include <algorithm>
 #include <cmath>

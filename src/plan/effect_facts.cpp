@@ -2,7 +2,7 @@
 
 #include "light/texture.h"
 #include "scene/solids.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>

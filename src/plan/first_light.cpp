@@ -3,7 +3,7 @@
 #include "base/near_match.h"
 #include "plan/first_few.h"
 #include "plan/lamp_names.h"
-#include "scene/sealed_room.h"
+#include "scene/room_body.h"
 
 #include <algorithm>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "mesh/mesher.h"
 #include "plan/shadow_lines.h"
-#include "scene/bent_faces.h"
+#include "scene/extent.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,11 +6,11 @@
 #include "base/rounded.h"
 #include "light/photometry.h"
 #include "plan/first_few.h"
-#include "scene/box_row.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
-#include "scene/lamp_places.h"
+#include "scene/face_tree.h"
 #include "scene/shells.h"
+#include "scene/solids.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "render/lens.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
 
 #include "base/sampling.h"
-#include "scene/projection.h"
 
 #include <algorithm>
 #include <cmath>

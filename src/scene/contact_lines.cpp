@@ -1,7 +1,6 @@
 #include "patchlight/scene/contact_lines.h"
 
 #include "base/parallel.h"
-#include "scene/bent_faces.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/triangulate.h"
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -17,12 +15,6 @@
 
 namespace patchlight {
 namespace {
-
-constexpr double largest_gap_of_scene = 0.02;   // of the root of the area of all faces
-constexpr double largest_gap_of_polygon = 0.1;  // of the root of its own
-
-// Two faces go on from one to the other over their edge if neither rises more steeply there.
-constexpr double least_slope_cosine = 0.1;
 
 // An edge between two vertices with one of the polygons that have it.
 struct SharedEdge {
@@ -55,7 +47,7 @@ struct Ground {
   PolygonIndex polygon;
   std::vector<Point> corners;
   Vector normal;
-  double reach;  // metres
+  double reach;  // meters
   bool convex;
   bool front, back;  // which sides are kept
 
@@ -63,189 +55,170 @@ struct Ground {
   Point foot(const Point& point) const { return point - height(point) * normal; }
 };
 
-struct ContactSearch {
-  const Scene& scene;
-  const KeptSides& kept;
-  FaceTree tree;
-  std::vector<SharedEdge> edges;
-  const std::vector<std::uint8_t>& is_bent;
-  double touch;        // metres
-  double largest_gap;  // metres
-
-  Ground ground_of(PolygonIndex polygon) const;
-  bool goes_on(const Ground& ground, PolygonIndex face, std::size_t corner, bool touches) const;
-  bool is_along_outline(const Ground& ground, const ContactLine& line) const;
-  std::optional<ContactLine> inside(const Ground& ground, ContactLine line) const;
-  void add_edges(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const;
-  void add_crossing(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const;
-  LinesOnFaces on(PolygonIndex polygon) const;
-};
-
-Ground ContactSearch::ground_of(PolygonIndex polygon) const {
-  std::vector<Point> corners = corner_points(scene, polygon);
-  const double reach = std::min(largest_gap, largest_gap_of_polygon * std::sqrt(tree.face(polygon).area));
-  const bool convex = patchlight::is_convex(corners);
-  return {polygon, std::move(corners),       tree.face(polygon).normal, reach,
-          convex,  kept.front[polygon] != 0, kept.back[polygon] != 0};
-}
-
-double squared_distance(const Point& point, const Point& from, const Point& to) {
-  const Vector edge = to - from;
-  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-  return (from + t * edge - point).squaredNorm();
-}
-
 // The way into a face from its edge, seen along the ground's normal and across the edge: from -1 to 1.
 double way_in(const Ground& ground, const FlatFace& face, const Point& from, const Point& to) {
   const Vector inward = face.normal.cross(to - from).normalized();
   return inward.dot(ground.normal.cross(to - from).normalized());
 }
 
-// Is the edge after this corner one over which the face goes on, as another one has it that lies to its other side?
-// Then no shadow ends there. Where the edge touches the ground light does not pass below it, unless both faces lie on
-// it.
-bool ContactSearch::goes_on(const Ground& ground, PolygonIndex face, std::size_t corner, bool touches) const {
-  const auto& corners = scene.polygons[face].corners;
-  const auto [low, high] = std::minmax(corners[corner], corners[(corner + 1) % corners.size()]);
-  const auto range = std::equal_range(edges.begin(), edges.end(), SharedEdge{low, high, 0},
-                                      [](const auto& a, const auto& b) { return a.ends() < b.ends(); });
-  if (range.second - range.first != 2) return false;
-  const PolygonIndex other = range.first->polygon == face ? (range.first + 1)->polygon : range.first->polygon;
-  if (other == face || other == ground.polygon) return false;
-  const auto is_flat_on = [&](PolygonIndex one) {
-    return std::all_of(scene.polygons[one].corners.begin(), scene.polygons[one].corners.end(),
-                       [&](std::uint32_t v) { return std::abs(ground.height(scene.vertices[v])) <= touch; });
-  };
-  if (touches && !(is_flat_on(face) && is_flat_on(other))) return false;
-  const auto& others = scene.polygons[other].corners;
-  const auto place = std::find(others.begin(), others.end(), corners[corner]);
-  const auto at = static_cast<std::size_t>(place - others.begin());
-  const bool same_way = others[(at + 1) % others.size()] == corners[(corner + 1) % corners.size()];
-  const Point& from = scene.vertices[corners[corner]];
-  const Point& to = scene.vertices[corners[(corner + 1) % corners.size()]];
-  const double one = way_in(ground, tree.face(face), from, to);
-  const double two = (same_way ? 1 : -1) * way_in(ground, tree.face(other), from, to);
-  return std::min(std::abs(one), std::abs(two)) > least_slope_cosine && one * two < 0;
-}
+struct ContactSearch {
+  const Scene& scene;
+  const KeptSides& kept;
+  FaceTree tree;
+  std::vector<SharedEdge> edges;
+  const std::vector<std::uint8_t>& is_bent;
+  double touch;        // meters
+  double largest_gap;  // meters
 
-bool ContactSearch::is_along_outline(const Ground& ground, const ContactLine& line) const {
-  const std::size_t n = ground.corners.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const Point& from = ground.corners[k];
-    const Point& to = ground.corners[(k + 1) % n];
-    if (from == to) continue;
-    if (squared_distance(line.from, from, to) <= touch * touch && squared_distance(line.to, from, to) <= touch * touch)
-      return true;
+  Ground ground_of(PolygonIndex polygon) const {
+    std::vector<Point> corners = corner_points(scene, polygon);
+    const double reach = std::min(largest_gap, 0.1 * std::sqrt(tree.face(polygon).area));
+    const bool convex = patchlight::is_convex(corners);
+    return {polygon, std::move(corners),       tree.face(polygon).normal, reach,
+            convex,  kept.front[polygon] != 0, kept.back[polygon] != 0};
   }
-  return false;
-}
 
-// The part of a line that lies on a convex polygon, if any; of others the line itself.
-std::optional<ContactLine> ContactSearch::inside(const Ground& ground, ContactLine line) const {
-  const std::size_t n = ground.corners.size();
-  for (std::size_t k = 0; ground.convex && k < n; ++k) {
-    const Vector inward = ground.normal.cross(ground.corners[(k + 1) % n] - ground.corners[k]);
-    const double from = inward.dot(line.from - ground.corners[k]);
-    const double to = inward.dot(line.to - ground.corners[k]);
-    if (from <= 0 && to <= 0) return std::nullopt;
-    const Point cut = line.from + from / (from - to) * (line.to - line.from);
-    if (from < 0) line.from = cut;
-    if (to < 0) line.to = cut;
+  // Is the edge after this corner one over which the face goes on, as another one has it that lies to its other side?
+  // Then no shadow ends there. Where the edge touches the ground light does not pass below it, unless both faces lie on
+  // it.
+  bool goes_on(const Ground& ground, PolygonIndex face, std::size_t corner, bool touches) const {
+    const auto& corners = scene.polygons[face].corners;
+    const auto [low, high] = std::minmax(corners[corner], corners[(corner + 1) % corners.size()]);
+    const auto range = std::equal_range(edges.begin(), edges.end(), SharedEdge{low, high, 0},
+                                        [](const auto& a, const auto& b) { return a.ends() < b.ends(); });
+    if (range.second - range.first != 2) return false;
+    const PolygonIndex other = range.first->polygon == face ? (range.first + 1)->polygon : range.first->polygon;
+    if (other == face || other == ground.polygon) return false;
+    const auto is_flat_on = [&](PolygonIndex one) {
+      return std::all_of(scene.polygons[one].corners.begin(), scene.polygons[one].corners.end(),
+                         [&](std::uint32_t v) { return std::abs(ground.height(scene.vertices[v])) <= touch; });
+    };
+    if (touches && !(is_flat_on(face) && is_flat_on(other))) return false;
+    const auto& others = scene.polygons[other].corners;
+    const auto place = std::find(others.begin(), others.end(), corners[corner]);
+    const auto at = static_cast<std::size_t>(place - others.begin());
+    const bool same_way = others[(at + 1) % others.size()] == corners[(corner + 1) % corners.size()];
+    const Point& from = scene.vertices[corners[corner]];
+    const Point& to = scene.vertices[corners[(corner + 1) % corners.size()]];
+    const double one = way_in(ground, tree.face(face), from, to);
+    const double two = (same_way ? 1 : -1) * way_in(ground, tree.face(other), from, to);
+    // Neither face may rise too steeply there.
+    return std::min(std::abs(one), std::abs(two)) > 0.1 && one * two < 0;
   }
-  if ((line.to - line.from).norm() <= touch || is_along_outline(ground, line)) return std::nullopt;
-  return line;
-}
 
-// Edges of a face on the ground or close before it. Where an edge ends close before the ground, the light on the face
-// changes along it as well.
-void ContactSearch::add_edges(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const {
-  const std::vector<Point> corners = corner_points(scene, face);
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Point& from = corners[k];
-    const Point& to = corners[(k + 1) % corners.size()];
-    const auto [low, high] = std::minmax({ground.height(from), ground.height(to)});
-    const double gap = std::max(std::abs(low), std::abs(high));
-    if (gap > ground.reach || (low < -touch && !ground.back) || (high > touch && !ground.front)) continue;
-    const bool touches = gap <= touch;
-    if (goes_on(ground, face, k, touches)) continue;
-    const auto line = inside(ground, {ground.foot(from), ground.foot(to), touches ? 0 : gap});
-    if (!line) continue;
-    lines.emplace_back(ground.polygon, *line);
-    if (!touches && (kept.front[face] != 0 || kept.back[face] != 0))
-      lines.emplace_back(face, ContactLine{from, to, gap});
-  }
-}
-
-// Where a face goes through the ground: its outline does so an even number of times, and every other stretch between
-// these places is inside.
-void ContactSearch::add_crossing(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const {
-  const std::vector<Point> corners = corner_points(scene, face);
-  const Vector along = ground.normal.cross(tree.face(face).normal);
-  std::vector<std::pair<double, Point>> places;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Point& next = corners[(k + 1) % corners.size()];
-    const double from = ground.height(corners[k]);
-    const double to = ground.height(next);
-    if ((from > touch) == (to > touch)) continue;
-    const double t = std::clamp(from / (from - to), 0.0, 1.0);
-    const Point place = ground.foot(corners[k] + t * (next - corners[k]));
-    places.emplace_back(along.dot(place - ground.corners[0]), place);
-  }
-  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
-    if (const auto line = inside(ground, {places[k].second, places[k + 1].second, 0}))
-      lines.emplace_back(ground.polygon, *line);
-  }
-}
-
-LinesOnFaces ContactSearch::on(PolygonIndex polygon) const {
-  const Ground ground = ground_of(polygon);
-  if (!ground.front && !ground.back) return {};
-  constexpr double any_tilt = 3;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const Vector margin = Vector::Constant(std::max(ground.reach, touch));
-  const Box& box = tree.face(polygon).box;
-  const FaceQuery query{Box(box.min() - margin, box.max() + margin), infinite, ground.normal, any_tilt, 0, infinite};
-  std::vector<PolygonIndex> near;
-  tree.for_each(query, [&](PolygonIndex face) {
-    const Box& other = tree.face(face).box;
-    const double half = ground.normal.cwiseAbs().dot(other.sizes()) / 2;
-    if (face != polygon && is_bent[face] == 0 && std::abs(ground.height(other.center())) <= half + margin.x())
-      near.push_back(face);
-  });
-  std::sort(near.begin(), near.end());
-
-  LinesOnFaces lines;
-  for (const PolygonIndex face : near) {
-    double lowest = infinite;
-    double highest = -infinite;
-    for (const std::uint32_t corner : scene.polygons[face].corners) {
-      lowest = std::min(lowest, ground.height(scene.vertices[corner]));
-      highest = std::max(highest, ground.height(scene.vertices[corner]));
+  bool is_along_outline(const Ground& ground, const ContactLine& line) const {
+    const std::size_t n = ground.corners.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Point& from = ground.corners[k];
+      const Point& to = ground.corners[(k + 1) % n];
+      if (from == to) continue;
+      if (squared_distance(line.from, from, to) <= touch * touch &&
+          squared_distance(line.to, from, to) <= touch * touch)
+        return true;
     }
-    const bool before = highest > touch;
-    const bool behind = lowest < -touch;
-    if (lowest > ground.reach || highest < -ground.reach) continue;
-    if ((before && !behind && !ground.front) || (behind && !before && !ground.back)) continue;
-    add_edges(ground, face, lines);
-    if (before && behind) add_crossing(ground, face, lines);
+    return false;
   }
-  return lines;
-}
 
-// More are those of a damaged model whose faces cross anywhere: finding them takes minutes, and none is followed.
-constexpr double most_lines_found = 2e6;
+  // The part of a line that lies on a convex polygon, if any; of others the line itself.
+  std::optional<ContactLine> inside(const Ground& ground, ContactLine line) const {
+    const std::size_t n = ground.corners.size();
+    for (std::size_t k = 0; ground.convex && k < n; ++k) {
+      const Vector inward = ground.normal.cross(ground.corners[(k + 1) % n] - ground.corners[k]);
+      const double from = inward.dot(line.from - ground.corners[k]);
+      const double to = inward.dot(line.to - ground.corners[k]);
+      if (from <= 0 && to <= 0) return std::nullopt;
+      const Point cut = line.from + from / (from - to) * (line.to - line.from);
+      if (from < 0) line.from = cut;
+      if (to < 0) line.to = cut;
+    }
+    if ((line.to - line.from).norm() <= touch || is_along_outline(ground, line)) return std::nullopt;
+    return line;
+  }
 
-// How many lines there will be, as some polygons tell. A large one on which all others stand, as a floor, tells nothing
-// of these.
+  // Edges of a face on the ground or close before it. Where an edge ends close before the ground, the light on the face
+  // changes along it as well.
+  void add_edges(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const {
+    const std::vector<Point> corners = corner_points(scene, face);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Point& from = corners[k];
+      const Point& to = corners[(k + 1) % corners.size()];
+      const auto [low, high] = std::minmax({ground.height(from), ground.height(to)});
+      const double gap = std::max(std::abs(low), std::abs(high));
+      if (gap > ground.reach || (low < -touch && !ground.back) || (high > touch && !ground.front)) continue;
+      const bool touches = gap <= touch;
+      if (goes_on(ground, face, k, touches)) continue;
+      const auto line = inside(ground, {ground.foot(from), ground.foot(to), touches ? 0 : gap});
+      if (!line) continue;
+      lines.emplace_back(ground.polygon, *line);
+      if (!touches && (kept.front[face] != 0 || kept.back[face] != 0))
+        lines.emplace_back(face, ContactLine{from, to, gap});
+    }
+  }
+
+  // Where a face goes through the ground: its outline does so an even number of times, and every other stretch between
+  // these places is inside.
+  void add_crossing(const Ground& ground, PolygonIndex face, LinesOnFaces& lines) const {
+    const std::vector<Point> corners = corner_points(scene, face);
+    const Vector along = ground.normal.cross(tree.face(face).normal);
+    std::vector<std::pair<double, Point>> places;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Point& next = corners[(k + 1) % corners.size()];
+      const double from = ground.height(corners[k]);
+      const double to = ground.height(next);
+      if ((from > touch) == (to > touch)) continue;
+      const double t = std::clamp(from / (from - to), 0.0, 1.0);
+      const Point place = ground.foot(corners[k] + t * (next - corners[k]));
+      places.emplace_back(along.dot(place - ground.corners[0]), place);
+    }
+    std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
+      if (const auto line = inside(ground, {places[k].second, places[k + 1].second, 0}))
+        lines.emplace_back(ground.polygon, *line);
+    }
+  }
+
+  LinesOnFaces on(PolygonIndex polygon) const {
+    const Ground ground = ground_of(polygon);
+    if (!ground.front && !ground.back) return {};
+    const double margin = std::max(ground.reach, touch);
+    std::vector<PolygonIndex> near;
+    tree.for_each(FaceQuery{.box = with_margin(tree.face(polygon).box, margin)}, [&](PolygonIndex face) {
+      const Box& other = tree.face(face).box;
+      const double half = ground.normal.cwiseAbs().dot(other.sizes()) / 2;
+      if (face != polygon && is_bent[face] == 0 && std::abs(ground.height(other.center())) <= half + margin)
+        near.push_back(face);
+    });
+    std::sort(near.begin(), near.end());
+
+    LinesOnFaces lines;
+    for (const PolygonIndex face : near) {
+      double lowest = std::numeric_limits<double>::infinity();
+      double highest = -lowest;
+      for (const std::uint32_t corner : scene.polygons[face].corners) {
+        lowest = std::min(lowest, ground.height(scene.vertices[corner]));
+        highest = std::max(highest, ground.height(scene.vertices[corner]));
+      }
+      const bool before = highest > touch;
+      const bool behind = lowest < -touch;
+      if (lowest > ground.reach || highest < -ground.reach) continue;
+      if ((before && !behind && !ground.front) || (behind && !before && !ground.back)) continue;
+      add_edges(ground, face, lines);
+      if (before && behind) add_crossing(ground, face, lines);
+    }
+    return lines;
+  }
+};
+
+// The number of lines, estimated from some polygons. A large one on which all others stand, for example a floor, does
+// not represent these.
 double expected_lines(const ContactSearch& search, const std::vector<std::uint8_t>& is_bent) {
   constexpr std::size_t looked_at = 512;
-  constexpr std::size_t most_of_one = 1000;
   const std::size_t step = is_bent.size() / looked_at;
   if (step < 2) return 0;
   std::vector<std::size_t> found(looked_at, 0);
   parallel_for(looked_at, [&](std::size_t k) {
-    if (is_bent[k * step] == 0) found[k] = std::min(most_of_one, search.on(static_cast<PolygonIndex>(k * step)).size());
+    if (is_bent[k * step] == 0)
+      found[k] = std::min<std::size_t>(1000, search.on(static_cast<PolygonIndex>(k * step)).size());
   });
   return static_cast<double>(std::accumulate(found.begin(), found.end(), std::size_t{0}) * step);
 }
@@ -263,15 +236,11 @@ ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept) {
   double area = 0;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) area += tree.face(p).area;
   const std::vector<std::uint8_t> is_bent = bent_faces(scene);
-  const ContactSearch search{scene,
-                             kept,
-                             std::move(tree),
-                             edges_of(scene),
-                             is_bent,
-                             weld_distance(scene),
-                             largest_gap_of_scene * std::sqrt(area)};
+  const ContactSearch search{
+      scene, kept, std::move(tree), edges_of(scene), is_bent, weld_distance(scene), 0.02 * std::sqrt(area)};
   ContactLines lines;
-  lines.everywhere = expected_lines(search, is_bent) > most_lines_found;
+  // A damaged model has more, where faces cross anywhere: finding them takes minutes, and none is followed.
+  lines.everywhere = expected_lines(search, is_bent) > 2e6;
   if (lines.everywhere) return lines;
   std::vector<LinesOnFaces> found(scene.polygons.size());
   parallel_for(found.size(), [&](std::size_t p) {

@@ -9,8 +9,7 @@
 
 namespace patchlight {
 
-/// A point nearer to a plane than this share of the scene's extent counts as in it, where only single precision tells:
-/// what rounding leaves of its height.
+/// A point nearer to a plane than this share of the scene's extent counts as in it in single precision, by rounding.
 constexpr double in_plane_tolerance = 3e-7;
 
 /// Where polygons lie one on the other in the same plane, as a rug drawn on a floor, or the floors of two solids: for
@@ -35,5 +34,18 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 /// DiagnosticCode::overlapping_faces with the polygons that are covered in part, and DiagnosticCode::covered_lamp with
 /// those of them that emit there; nothing when there are none.
 Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& coverings);
+
+/// A part of the plane of some faces that none of them fills.
+struct Hole {
+  PolygonIndex plane = 0;                  ///< the largest of the faces in its plane
+  std::vector<std::vector<Point>> pieces;  ///< convex, counter-clockwise around one normal of the plane
+};
+
+/// Parts of the planes of a scene's faces that none of the faces in that plane fills, though they lie within the convex
+/// hull of these and of corners of other faces near by that lie in the plane: holes in walls, doorways, slits between a
+/// wall and the ceiling above it; but also the places beside an L-shaped floor. Pieces narrower than weld_distance()
+/// are left out. Cuts the largest faces first, for some tenths of a second at most; of planes with very many faces
+/// nothing is found. O(n log n) for n polygons, expected.
+std::vector<Hole> holes_between_faces(const Scene& scene);
 
 }  // namespace patchlight

@@ -3,15 +3,65 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/scene/scene.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
 
-/// What a search among flat faces looks at.
+/// Boxes in a row, for example those of a polygon's corners or edges along its outline, under a binary tree of the
+/// boxes around neighbors: a search passes over whole stretches of the outline.
+class BoxRow {
+ public:
+  explicit BoxRow(std::span<const Box> boxes);
+
+  /// The first place from `begin` on at which `is_sought(place)` holds. Stretches whose box `is_out(box)` are passed
+  /// over; it has to be true of a box only when it is so of all within.
+  template <class IsOut, class IsSought>
+  std::optional<std::size_t> first(std::size_t begin, const IsOut& is_out, const IsSought& is_sought) const {
+    return first_below(1, 0, leaves_, begin, is_out, is_sought);
+  }
+
+  /// Takes one out, so that it is never found again. O(log n).
+  void remove(std::size_t place);
+
+ private:
+  template <class IsOut, class IsSought>
+  std::optional<std::size_t> first_below(std::size_t node, std::size_t low, std::size_t width, std::size_t begin,
+                                         const IsOut& is_out, const IsSought& is_sought) const {
+    if (low + width <= begin || nodes_[node].isEmpty() || is_out(nodes_[node])) return std::nullopt;
+    if (width == 1) return is_sought(low) ? std::optional(low) : std::nullopt;
+    const auto left = first_below(2 * node, low, width / 2, begin, is_out, is_sought);
+    return left ? left : first_below(2 * node + 1, low + width / 2, width / 2, begin, is_out, is_sought);
+  }
+
+  std::size_t leaves_;      // a power of two
+  std::vector<Box> nodes_;  // the parts of node k are nodes 2 k and 2 k + 1; the whole is node 1
+};
+
+inline BoxRow::BoxRow(std::span<const Box> boxes) : leaves_(std::bit_ceil(boxes.size())), nodes_(2 * leaves_) {
+  for (std::size_t k = 0; k < boxes.size(); ++k) nodes_[leaves_ + k] = boxes[k];
+  for (std::size_t k = leaves_; k-- > 1;) nodes_[k] = nodes_[2 * k].merged(nodes_[2 * k + 1]);
+}
+
+inline void BoxRow::remove(std::size_t place) {
+  nodes_[leaves_ + place].setEmpty();
+  for (std::size_t k = (leaves_ + place) / 2; k > 0; k /= 2) nodes_[k] = nodes_[2 * k].merged(nodes_[2 * k + 1]);
+}
+
+/// The box, made larger by a margin on all sides.
+inline Box with_margin(const Box& box, double margin) {
+  const Vector all = Vector::Constant(margin);
+  return {box.min() - all, box.max() + all};
+}
+
+/// The properties of a face for searches.
 struct FlatFace {
   Box box;
   double area = 0;  ///< m^2
@@ -23,14 +73,15 @@ struct FlatFace {
 /// Of a polygon with these corners.
 FlatFace flat_face(const std::vector<Point>& corners);
 
-/// A plane with a tolerance, the box that a face has to meet, and the largest area it may have.
+/// The box that a face has to meet, the largest area it may have, and a plane with a tolerance: any by default.
 struct FaceQuery {
+  static constexpr double any = std::numeric_limits<double>::infinity();
   Box box;
-  double area;
-  Vector normal;  ///< unit
-  double tilt;    ///< how far the unit normal of a face may be from this one, or from its reverse
-  double offset;  ///< normal . x of the plane's points
-  double tolerance;
+  double area = any;
+  Vector normal = Vector::UnitZ();  ///< unit
+  double tilt = any;                ///< how far the unit normal of a face may be from this one, or from its reverse
+  double offset = 0;                ///< normal . x of the plane's points
+  double tolerance = any;
 
   bool admits(const FlatFace& face) const {
     return face.area <= area && box.intersects(face.box) && is_near(face.mean) && is_near(face.farthest) &&
@@ -43,10 +94,10 @@ struct FaceQuery {
 };
 
 /// Which faces a tree keeps together: those of one direction, for queries that ask for parallel ones, or those at one
-/// place, for queries that ask for what a box meets.
+/// place, for queries of the faces in a box.
 enum class FaceOrder : std::uint8_t { by_direction, by_place };
 
-/// A tree over faces. O(n log n) to build. The order changes what a search costs, and in which order it visits.
+/// A tree over faces. O(n log n) to build. The order decides the cost of a search, and the order of its visits.
 class FaceTree {
  public:
   explicit FaceTree(std::vector<FlatFace> faces, FaceOrder order = FaceOrder::by_direction);
@@ -93,5 +144,19 @@ class FaceTree {
 
 /// Of all polygons of a scene, in order.
 FaceTree tree_of_faces(const Scene& scene, FaceOrder order = FaceOrder::by_direction);
+
+/// Per polygon 1 when a vertex of the scene lies before its front, and behind it, by more than 1e-6 of the scene's
+/// extent.
+struct HalfSpaces {
+  std::vector<std::uint8_t> before;
+  std::vector<std::uint8_t> behind;
+};
+
+/// O(n log n) for most scenes of n vertices and polygons.
+HalfSpaces occupied_half_spaces(const Scene& scene);
+
+/// The straight pieces along which a plane, through `on` across `normal`, cuts the polygons of a scene; nothing of
+/// polygons that lie in it.
+std::vector<std::array<Point, 2>> section_of(const Scene& scene, const Point& on, const Vector& normal);
 
 }  // namespace patchlight

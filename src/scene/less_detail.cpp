@@ -1,24 +1,216 @@
 #include "scene/less_detail.h"
 
+#include "base/disjoint_sets.h"
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/shells.h"
+#include "scene/simple_polygon.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-using Frame = Eigen::Matrix3d;  // its rows are the axes of a box
+constexpr double same_direction = 1e-4;  // radians
+using Slot = std::uint32_t;              // a corner of a polygon, and the edge that begins there
+constexpr Slot no_slot = ~Slot{0};
 
-double area_of(const Scene& scene, PolygonIndex p) { return area_vector(corner_points(scene, p)).norm(); }
+// All corners of all polygons one after the other, as loops that can be joined.
+struct Loops {
+  std::vector<std::uint32_t> vertex;  // per slot
+  std::vector<PolygonIndex> polygon;
+  std::vector<Slot> next;
+  std::vector<Slot> before;
+  std::vector<Slot> mate;   // the same edge of the polygon beside, walked the other way, where the two can become one
+  std::vector<Slot> first;  // per polygon
+};
+
+Loops loops_of(const Scene& scene) {
+  Loops loops;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const auto begin = static_cast<Slot>(loops.vertex.size());
+    const auto count = static_cast<Slot>(scene.polygons[p].corners.size());
+    loops.first.push_back(begin);
+    for (Slot k = 0; k < count; ++k) {
+      loops.vertex.push_back(scene.polygons[p].corners[k]);
+      loops.polygon.push_back(p);
+      loops.next.push_back(begin + (k + 1) % count);
+      loops.before.push_back(begin + (k + count - 1) % count);
+    }
+  }
+  loops.mate.assign(loops.vertex.size(), no_slot);
+  return loops;
+}
+
+// True when one side of two polygons lies in the picture of its material as if both were one: to a hundredth of a texel
+// of most pictures, and more than six digits of coordinates leave open.
+bool continue_picture(const Scene& scene, const Polygon& a, const Polygon& b, Side side) {
+  const TextureMap* one = texture_map_on(scene, a, side);
+  const TextureMap* other = texture_map_on(scene, b, side);
+  if (!one || !other) return one == other;
+  for (const Polygon* polygon : {&a, &b}) {
+    for (const std::uint32_t corner : polygon->corners) {
+      const Point& at = scene.vertices[corner];
+      if (!((one->linear * at + one->offset - other->linear * at - other->offset).norm() <= 1e-5)) return false;
+    }
+  }
+  return true;
+}
+
+bool continue_pictures(const Scene& scene, const Polygon& a, const Polygon& b) {
+  return continue_picture(scene, a, b, Side::front) && continue_picture(scene, a, b, Side::back);
+}
+
+bool are_alike(const Scene& scene, const std::vector<Vector>& normals, PolygonIndex p, PolygonIndex q) {
+  const Polygon& a = scene.polygons[p];
+  const Polygon& b = scene.polygons[q];
+  return p != q && a.material == b.material && a.back_material == b.back_material && a.group == b.group &&
+         a.file == b.file && (normals[p] - normals[q]).norm() <= same_direction && continue_pictures(scene, a, b);
+}
+
+// Finds the edges that two alike polygons of one plane share, and no third one.
+void find_mates(Loops& loops, const Scene& scene, const std::vector<Vector>& normals) {
+  struct Use {
+    std::uint64_t edge;
+    Slot slot;
+    bool operator<(const Use& other) const { return std::tie(edge, slot) < std::tie(other.edge, other.slot); }
+  };
+  std::vector<Use> uses(loops.vertex.size());
+  for (Slot slot = 0; slot < uses.size(); ++slot) {
+    const auto [low, high] = std::minmax(loops.vertex[slot], loops.vertex[loops.next[slot]]);
+    uses[slot] = {std::uint64_t{low} << 32 | high, slot};
+  }
+  std::sort(uses.begin(), uses.end());
+  for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+    while (end < uses.size() && uses[end].edge == uses[begin].edge) ++end;
+    if (end - begin != 2) continue;
+    const Slot a = uses[begin].slot;
+    const Slot b = uses[begin + 1].slot;
+    if (loops.vertex[a] == loops.vertex[b] || !are_alike(scene, normals, loops.polygon[a], loops.polygon[b])) continue;
+    loops.mate[a] = b;
+    loops.mate[b] = a;
+  }
+}
+
+// Leaves out an edge of two loops, which become one, or a spike out and back of one loop.
+void leave_out(Loops& loops, Slot a, Slot b) {
+  const auto link = [&loops](Slot from, Slot to) {
+    loops.next[from] = to;
+    loops.before[to] = from;
+  };
+  const Slot before_a = loops.before[a];
+  const Slot before_b = loops.before[b];
+  const Slot after_a = loops.next[a];
+  const Slot after_b = loops.next[b];
+  if (after_a != b) link(before_b, after_a);
+  if (after_b != a) link(before_a, after_b);
+  loops.mate[a] = loops.mate[b] = no_slot;
+  loops.next[a] = loops.next[b] = no_slot;
+}
+
+// Leaves out edges that a loop walks along to and fro at once, until there are none.
+void leave_out_spikes(Loops& loops) {
+  for (Slot slot = 0; slot < loops.vertex.size(); ++slot) {
+    for (Slot a = slot; loops.next[a] != no_slot && loops.mate[a] != no_slot;) {
+      const Slot b = loops.mate[a];
+      if (loops.next[a] != b && loops.next[b] != a) break;
+      const Slot root = loops.next[a] == b ? loops.before[a] : loops.before[b];
+      leave_out(loops, a, b);
+      a = root;
+    }
+  }
+}
+
+// The polygons that become one, each list with its first in front.
+std::vector<std::vector<PolygonIndex>> joined_groups(Loops& loops, std::size_t polygons) {
+  DisjointSets groups(polygons);
+  for (Slot a = 0; a < loops.vertex.size(); ++a) {
+    const Slot b = loops.mate[a];
+    if (b != no_slot && a < b && groups.join(loops.polygon[a], loops.polygon[b])) leave_out(loops, a, b);
+  }
+  leave_out_spikes(loops);
+  std::vector<std::vector<PolygonIndex>> members(polygons);
+  for (PolygonIndex p = 0; p < polygons; ++p) members[groups.root(p)].push_back(p);
+  return members;
+}
+
+// The corners of the loop that is left of several polygons.
+std::vector<std::uint32_t> corners_of(const Loops& loops, const std::vector<PolygonIndex>& members,
+                                      const Scene& scene) {
+  for (const PolygonIndex p : members) {
+    for (Slot k = 0; k < scene.polygons[p].corners.size(); ++k) {
+      const Slot begin = loops.first[p] + k;
+      if (loops.next[begin] == no_slot) continue;
+      std::vector<std::uint32_t> corners;
+      for (Slot slot = begin; corners.empty() || slot != begin; slot = loops.next[slot]) {
+        corners.push_back(loops.vertex[slot]);
+        if (corners.size() > 2000) return {};
+      }
+      return corners;
+    }
+  }
+  return {};
+}
+
+// The polygon that several become; nothing where they had better stay apart.
+std::optional<Polygon> joined(const Scene& scene, const Loops& loops, const std::vector<PolygonIndex>& members,
+                              double width) {
+  const auto is_quadrilateral = [&scene](PolygonIndex p) { return scene.polygons[p].corners.size() == 4; };
+  if (std::all_of(members.begin(), members.end(), is_quadrilateral)) return std::nullopt;
+  Polygon whole = scene.polygons[members.front()];
+  // Differences of neighbors add up.
+  if (!std::all_of(members.begin(), members.end(),
+                   [&](PolygonIndex p) { return continue_pictures(scene, whole, scene.polygons[p]); }))
+    return std::nullopt;
+  whole.corners = corners_of(loops, members, scene);
+  if (whole.corners.empty()) return std::nullopt;
+  double area = 0;
+  for (const PolygonIndex p : members) area += polygon_area(scene, p);
+  const Pieces pieces = pieces_of(scene, whole, width);
+  if (pieces.defect || pieces.polygons.size() != 1) return std::nullopt;
+  // An outline that is turned over in part has less area than its faces.
+  const double own_area = area_vector(corner_points(scene, whole.corners)).norm();
+  if (std::abs(own_area - area) > tolerance_of_coordinates * area) return std::nullopt;
+  return whole;
+}
+
+bool goes_straight_on(const Point& before, const Point& at, const Point& after, double width) {
+  const Vector in = at - before;
+  const Vector out = after - at;
+  if (in.dot(out) <= 0) return false;
+  const double twice_the_area = in.cross(out).norm();
+  return twice_the_area <= same_direction * in.norm() * out.norm() && twice_the_area <= width * (after - before).norm();
+}
+
+// Leaves out the corners of joined polygons at which every polygon goes straight on.
+void leave_out_straight_corners(Scene& scene, const std::vector<std::uint8_t>& is_joined, double width) {
+  enum : std::uint8_t { unused, straight, needed };
+  std::vector<std::uint8_t> kind(scene.vertices.size(), unused);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const std::vector<std::uint32_t>& corners = scene.polygons[p].corners;
+    for (std::size_t k = 0, n = corners.size(); k < n; ++k) {
+      const auto place = [&](std::size_t at) -> const Point& { return scene.vertices[corners[at % n]]; };
+      if (n == 3 || !goes_straight_on(place(k + n - 1), place(k), place(k + 1), width))
+        kind[corners[k]] = needed;
+      else if (kind[corners[k]] == unused && is_joined[p] != 0)
+        kind[corners[k]] = straight;
+    }
+  }
+  for (Polygon& polygon : scene.polygons)
+    std::erase_if(polygon.corners, [&kind](std::uint32_t corner) { return kind[corner] == straight; });
+}
+
+using Frame = Eigen::Matrix3d;  // its rows are the axes of a box
 
 Box box_of(const Scene& scene, const std::vector<PolygonIndex>& shell, const Frame& frame) {
   Box box;
@@ -30,15 +222,14 @@ Box box_of(const Scene& scene, const std::vector<PolygonIndex>& shell, const Fra
 
 // Square to the largest face, and along that of its edges with which the box around the shell is least.
 Frame frame_of(const Scene& scene, const std::vector<PolygonIndex>& shell) {
-  constexpr std::size_t most_edges = 8;  // of a round face any will do
   const PolygonIndex largest = *std::max_element(shell.begin(), shell.end(), [&scene](PolygonIndex a, PolygonIndex b) {
-    return area_of(scene, a) < area_of(scene, b);
+    return polygon_area(scene, a) < polygon_area(scene, b);
   });
   const Vector normal = front_normal(scene, largest);
   const std::vector<Point> corners = corner_points(scene, largest);
   Frame best = Frame::Identity();
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < std::min(corners.size(), most_edges); ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(corners.size(), 8); ++k) {  // of a round face any will do
     const Vector edge = corners[(k + 1) % corners.size()] - corners[k];
     const Vector along = (edge - edge.dot(normal) * normal).normalized();
     Frame frame;
@@ -78,8 +269,8 @@ bool is_near_box(const Scene& scene, const std::vector<PolygonIndex>& shell, con
 // Is the shell a body that is no room and has no hole through it? One with a hole, as a slab with a window or a frame,
 // has another Euler characteristic than a ball's, V - E + F = 2.
 bool is_solid_block(const Scene& scene, const std::vector<PolygonIndex>& shell, const Box& box, double width) {
-  constexpr double depth_of_rooms = 1;  // metres: where all sides are longer one could stand inside
-  if (!(box.sizes().minCoeff() > width) || box.sizes().minCoeff() > depth_of_rooms) return false;
+  // One could stand inside where all sides are longer than 1 m.
+  if (!(box.sizes().minCoeff() > width) || box.sizes().minCoeff() > 1) return false;
   std::set<std::uint32_t> vertices;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const PolygonIndex p : shell) {
@@ -104,8 +295,8 @@ bool fills_box(const Scene& scene, const std::vector<PolygonIndex>& shell, const
     const double a = sizes[(axis + 1) % 3];
     const double b = sizes[(axis + 2) % 3];
     const double without_rim = std::max(0.0, a - 2 * detail) * std::max(0.0, b - 2 * detail);
-    const double most = 1.5 * a * b;  // far more is behind one another: shelves, a frame within a frame
-    if (seen[axis] < without_rim || (without_rim > 0 && seen[axis] > most)) return false;
+    // Far more is behind one another: shelves, a frame within a frame.
+    if (seen[axis] < without_rim || (without_rim > 0 && seen[axis] > 1.5 * a * b)) return false;
   }
   return true;
 }
@@ -118,9 +309,8 @@ bool holds_others(const Scene& scene, const FaceTree& tree, const Shells& shells
   if (within.isEmpty()) return false;
   Box around;
   for (const Point& corner : box_corners(frame, box)) around.extend(corner);
-  constexpr double any = std::numeric_limits<double>::infinity();
   bool holds = false;
-  tree.for_each(FaceQuery{around, any, Vector::UnitZ(), any, 0, any}, [&](std::size_t p) {
+  tree.for_each(FaceQuery{.box = around}, [&](std::size_t p) {
     if (holds || shells.shell[p] == shell) return;
     for (const Point& corner : corner_points(scene, static_cast<PolygonIndex>(p)))
       holds = holds || within.contains(Point(frame * corner));
@@ -142,8 +332,8 @@ MaterialIndex material_of_box(Scene& scene, const std::vector<PolygonIndex>& she
   for (const PolygonIndex p : shell) {
     const MaterialIndex own = scene.polygons[p].material;
     is_one = is_one && own == first;
-    area += area_of(scene, p);
-    reflected += area_of(scene, p) * scene.materials[own].reflectance;
+    area += polygon_area(scene, p);
+    reflected += polygon_area(scene, p) * scene.materials[own].reflectance;
   }
   if (is_one) return first;
   Material mean = scene.materials[first];
@@ -178,6 +368,38 @@ std::string share(double part, double all) { return rounded(100 * part / all, 2)
 
 }  // namespace
 
+Scene with_joined_faces(Scene scene) {
+  // 1. Edges between faces that can become one, and the loops that are left without them.
+  std::vector<Vector> normals(scene.polygons.size());
+  for (PolygonIndex p = 0; p < normals.size(); ++p) normals[p] = front_normal(scene, p);
+  Loops loops = loops_of(scene);
+  find_mates(loops, scene, normals);
+  if (std::all_of(loops.mate.begin(), loops.mate.end(), [](Slot mate) { return mate == no_slot; })) return scene;
+
+  // 2. Each group of faces as one polygon, or as it is.
+  const double width = weld_distance(scene);
+  std::vector<std::uint8_t> is_joined;
+  std::vector<Polygon> polygons;
+  std::vector<std::optional<Polygon>> whole(scene.polygons.size());
+  std::vector<std::uint8_t> is_part(scene.polygons.size(), 0);
+  for (const std::vector<PolygonIndex>& members : joined_groups(loops, scene.polygons.size())) {
+    if (members.size() < 2) continue;
+    whole[members.front()] = joined(scene, loops, members, width);
+    if (!whole[members.front()]) continue;
+    for (const PolygonIndex p : members) is_part[p] = p != members.front();
+  }
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (is_part[p] != 0) continue;
+    is_joined.push_back(whole[p].has_value());
+    polygons.push_back(whole[p] ? std::move(*whole[p]) : std::move(scene.polygons[p]));
+  }
+  scene.polygons = std::move(polygons);
+
+  // 3. Corners that only the edges left out needed.
+  leave_out_straight_corners(scene, is_joined, width);
+  return scene;
+}
+
 Scene with_less_detail(Scene scene, double detail) {
   std::map<PolygonIndex, std::vector<PolygonIndex>> shells;
   const Shells found = shells_of(scene);
@@ -190,7 +412,7 @@ Scene with_less_detail(Scene scene, double detail) {
   double area = 0, area_left_out = 0, area_of_boxes = 0;
   for (const auto& [first, shell] : shells) {
     double own = 0;
-    for (const PolygonIndex p : shell) own += area_of(scene, p);
+    for (const PolygonIndex p : shell) own += polygon_area(scene, p);
     area += own;
     const bool plain = std::all_of(shell.begin(), shell.end(), [&scene](PolygonIndex p) { return is_plain(scene, p); });
     const Frame frame = frame_of(scene, shell);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/luminaire.h"
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace patchlight {
@@ -15,7 +17,7 @@ namespace patchlight {
 /// about the horizontal one, cos h (cos v aim + sin v z) - sin h s.
 enum class PhotometricType : std::uint8_t { a, b, c };
 
-/// What a luminous opening is by the signs of its width, length and height, IES LM-63-02 table 1.
+/// The shape of a luminous opening by the signs of its width, length and height, IES LM-63-02 table 1.
 enum class OpeningShape : std::uint8_t {
   box,                 ///< a rectangle, with a height a box: none negative
   upright_cylinder,    ///< an ellipse, with a height a cylinder: - - +
@@ -24,19 +26,19 @@ enum class OpeningShape : std::uint8_t {
   ellipsoid            ///< - - -
 };
 
-/// The intensities of a luminaire as measured by its maker: what an IES LM-63 file holds.
+/// The intensities of a luminaire as measured by its maker: the content of an IES LM-63 file.
 struct PhotometricWeb {
   std::string file{};  ///< for messages
   PhotometricType type = PhotometricType::c;
   std::vector<double> vertical{};    ///< degrees, ascending
-  std::vector<double> horizontal{};  ///< degrees, ascending; what symmetry tells is left out, as in the file
+  std::vector<double> horizontal{};  ///< degrees, ascending; without angles that follow from symmetry
   std::vector<double> candela{};     ///< at horizontal h and vertical v: [h * vertical.size() + v], all factors applied
-  Vector opening = Vector::Zero();   ///< luminous width, length and height in metres; 0 for a point
+  Vector opening = Vector::Zero();   ///< luminous width, length and height in meters; 0 for a point
   OpeningShape shape = OpeningShape::box;
   double lamp_lumens = 0;             ///< of all lamps together, lm; 0 with absolute photometry, which does not say
   double watts = 0;                   ///< electrical input
   std::vector<double> tilt{};         ///< degrees between the aim and straight down, ascending; empty: does not matter
-  std::vector<double> tilt_factor{};  ///< what the candela are multiplied with when tilted so
+  std::vector<double> tilt_factor{};  ///< factors of the candela at these tilts
 };
 
 /// The frame of a luminaire: two unit vectors at right angles.
@@ -50,11 +52,31 @@ struct LuminaireFrame {
 /// 180 (or 90 to 270), both halves alike; types A and B from 0: left and right alike. O(log n) for n angles.
 double candela(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
 
-/// What a tilted luminaire's candela are multiplied with; linear between the table's angles. 1 without a table.
+/// The factor of a tilted luminaire's candela; linear between the table's angles. 1 without a table.
 double tilt_factor(const PhotometricWeb& web, double tilt_degrees);
 
 /// Flux of the luminaire in lumens, not tilted: the integral of candela() over the sphere, by the midpoint rule on half
 /// a degree.
 double luminous_flux(const PhotometricWeb& web);
+
+/// The spectrum of a luminaire, const or not, to which its light is proportional.
+template <typename AnyLuminaire>
+auto& strength_of(AnyLuminaire& luminaire) {
+  const auto strength = [](auto& light) -> auto& {
+    if constexpr (requires { light.intensity; })
+      return light.intensity;
+    else if constexpr (requires { light.exitance; })
+      return light.exitance;
+    else
+      return light.watts_per_lumen;
+  };
+  return std::visit(strength, luminaire.light);
+}
+
+/// A luminaire that gives a share of its light.
+inline Luminaire dimmed(Luminaire luminaire, double share) {
+  strength_of(luminaire) *= share;
+  return luminaire;
+}
 
 }  // namespace patchlight

@@ -1,14 +1,10 @@
 #include "scene/repair.h"
 
-#include "patchlight/scene/scene.h"
-
 #include "scene/extent.h"
 #include "scene/model_face.h"
 #include "scene/openings.h"
-#include "scene/pieces.h"
 #include "scene/shells.h"
-#include "scene/solid_panes.h"
-#include "scene/weld.h"
+#include "scene/simple_polygon.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -40,7 +36,7 @@ struct Key {
   bool reversed = false;
 };
 
-// Of all rotations the one that comes first.
+// The rotation that comes first.
 Loop first_rotation(const Loop& loop) {
   const std::uint32_t least = *std::min_element(loop.begin(), loop.end());
   Loop best;
@@ -99,7 +95,7 @@ Scene number_faces(Scene scene) {
   return scene;
 }
 
-// A stray vertex tells nothing of how large details are.
+// A stray vertex shall not decide how large details are.
 Scene report_far_faces(Scene scene) {
   Faces far;
   const Box main = main_bounds(scene);
@@ -117,34 +113,23 @@ Scene report_far_faces(Scene scene) {
 
 // Keeps one vertex of those at one place, and only those that polygons use.
 Scene weld_vertices(Scene scene) {
-  constexpr std::uint32_t unused = ~std::uint32_t{0};
-  std::vector<std::uint32_t> number(scene.vertices.size(), unused);
-  for (const Polygon& polygon : scene.polygons) {
-    for (const std::uint32_t corner : polygon.corners) number[corner] = 0;
-  }
-  std::vector<Point> used;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == unused) continue;
-    number[v] = static_cast<std::uint32_t>(used.size());
-    used.push_back(scene.vertices[v]);
-  }
+  const std::vector<std::uint32_t> used_numbers = used_vertices(scene);
+  const std::vector<Point> used = corner_points(scene, used_numbers);
   const double distance = weld_distance(scene);
   const std::vector<std::uint32_t> stands_for = welded(used, distance);
 
   std::size_t moved = 0;
-  std::vector<std::uint32_t> new_number(used.size());
+  std::vector<std::uint32_t> new_number(scene.vertices.size());
   scene.vertices.clear();
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    new_number[v] = static_cast<std::uint32_t>(scene.vertices.size());
-    if (stands_for[v] == v) {
-      scene.vertices.push_back(used[v]);
-    } else {
-      new_number[v] = new_number[stands_for[v]];
-      moved += used[v] != used[stands_for[v]];
-    }
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const std::uint32_t first = stands_for[k];
+    new_number[used_numbers[k]] =
+        first == k ? static_cast<std::uint32_t>(scene.vertices.size()) : new_number[used_numbers[first]];
+    if (first == k) scene.vertices.push_back(used[k]);
+    moved += used[k] != used[first];
   }
   for (Polygon& polygon : scene.polygons) {
-    for (std::uint32_t& corner : polygon.corners) corner = new_number[number[corner]];
+    for (std::uint32_t& corner : polygon.corners) corner = new_number[corner];
   }
   if (moved == 0) return scene;
   std::ostringstream what;
@@ -179,7 +164,7 @@ std::vector<std::uint32_t> without_spikes(std::vector<std::uint32_t> corners, co
       ++sound;
       continue;
     }
-    // Look again at the corner before, whose neighbour is another one now.
+    // Look again at the corner before, whose neighbor is another one now.
     corners.erase(corners.begin() + signed_place(k));
     k = (k + n - 2) % (n - 1);
     sound = 0;
@@ -203,16 +188,15 @@ Scene clean_corners(Scene scene) {
 
 // ", of wall" or ", of roof, wall, ...": the first five names.
 std::string of_objects(std::set<std::string> names) {
-  constexpr std::size_t most = 5;
   names.erase("");
   if (names.empty()) return "";
   std::string text = ", of ";
   std::size_t count = 0;
   for (const std::string& name : names) {
-    if (count < most) text += (count > 0 ? ", " : "") + name;
-    ++count;
+    if (++count > 5) return text + ", ...";
+    text += (count > 1 ? ", " : "") + name;
   }
-  return count > most ? text + ", ..." : text;
+  return text;
 }
 
 // The objects of which no face is left.
@@ -263,24 +247,14 @@ Scene make_simple(Scene scene) {
 
 // More than 1 % of the area of the model makes results wrong.
 Scene weigh_losses(Scene scene) {
-  constexpr double most = 0.01;
   double area = 0, lost = 0;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += area_vector(corner_points(scene, p)).norm();
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += polygon_area(scene, p);
   for (const Diagnostic& problem : scene.diagnostics) lost += is_loss(problem.code) ? problem.area : 0;
-  if (lost <= most * (area + lost)) return scene;
+  if (lost <= 0.01 * (area + lost)) return scene;
   for (Diagnostic& problem : scene.diagnostics) {
     if (problem.code == DiagnosticCode::little_left_out && problem.area > 0) problem.code = DiagnosticCode::left_out;
   }
   return scene;
-}
-
-std::vector<Polygon> without_marked(std::vector<Polygon> polygons, const std::vector<std::uint8_t>& marked) {
-  std::vector<Polygon> kept;
-  kept.reserve(polygons.size());
-  for (std::size_t p = 0; p < polygons.size(); ++p) {
-    if (marked[p] == 0) kept.push_back(std::move(polygons[p]));
-  }
-  return kept;
 }
 
 Scene merge_coincident(Scene scene) {
@@ -309,7 +283,8 @@ Scene merge_coincident(Scene scene) {
       covered.push_back(model_face(scene, second));
     }
   }
-  scene.polygons = without_marked(std::move(scene.polygons), found.is_second);
+  std::size_t place = 0;
+  std::erase_if(scene.polygons, [&](const Polygon&) { return found.is_second[place++] != 0; });
   const std::string others =
       other_material > 0 ? ", " + std::to_string(other_material) + " of them with another material" : "";
   scene = with_problem(std::move(scene), DiagnosticCode::overlapping_faces, std::move(opened),

@@ -4,8 +4,8 @@
 
 namespace patchlight {
 
-/// Makes a scene that a reader has put together fit for meshing: what is wrong with its shape is mended or left out,
-/// and reported in Scene::problems. In this order:
+/// Makes a scene that a reader has put together fit for meshing. Defects of its shape are fixed or left out, and
+/// reported in Scene::diagnostics. In this order:
 /// - vertices at one place become one (see welded_vertices in scene/weld.h for how near that is);
 /// - corners that repeat the one before, and spikes out and back, are left out;
 /// - faces without area, narrower than vertices are welded, are left out;
@@ -15,7 +15,7 @@ namespace patchlight {
 /// - an opaque face under a clear one of the same plane, or with the same corners, is opened there;
 /// - of the two faces of a solid pane the second becomes clear in full;
 /// - faces turned against the majority of those they are connected to and edges of three faces or more are counted.
-/// Polygon::face is set to the index in the given scene, so that every polygon tells which face it comes from.
+/// Polygon::face is set to the index in the given scene, so that every polygon names the face it comes from.
 /// Pure; O(n log n) for n corners. \throws InputError when a corner names no vertex or a vertex is not finite.
 Scene repair(Scene scene);
 

@@ -1,7 +1,11 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
+#include "scene/solids.h"
+
+#include <optional>
 #include <vector>
 
 namespace patchlight {
@@ -12,12 +16,33 @@ class RoomBody {
   explicit RoomBody(const std::vector<std::vector<Point>>& faces);
   /// True inside: two of three rays from there cross the faces an odd number of times. O(n) for n corners.
   bool holds(const Point& point) const;
-  /// How far from its walls a point is to be for rounding not to matter, metres.
+  /// How far from its walls a point is to be for rounding not to matter, meters.
   double step() const;
 
  private:
   std::vector<std::vector<Point>> faces_;
   Box box_;
 };
+
+/// Per room of the scene the area of the clear faces, both sides of a pane of glass each, that have it before them or
+/// behind them, and no room on their other side, within half a meter, as panes may stand in the thick of a wall; m^2.
+/// O(openings x corners of the rooms).
+std::vector<double> window_areas(const Scene& scene);
+
+/// The closed solid without clear faces and sheets that holds all of a scene, if there is one: no daylight gets into
+/// it. The far_polygons() do not count. One point of each other shell is tested, of
+/// so many, spread evenly, as take 1e7 tests of a triangle, half a second, and of 16 at least. O(n log n) for n
+/// corners, expected, and these tests for each closed solid as large as the scene.
+std::optional<Solid> sealed_hull(const Scene& scene);
+
+/// True when a sealed hull is that of a room, not of a body that is seen from outside: its fronts face inside,
+/// something stands in it, or the scene names its rooms.
+bool is_room(const Scene& scene, const Solid& hull);
+
+/// A place for a lamp in a room: a tenth of its height under its top, over its middle, or where that lies outside, as
+/// far under the largest triangle of its ceiling that has room below; nothing where none has. Of n triangles of the
+/// room as many, the largest first, are looked at as take 1e7 tests of a triangle, half a second, and 16 at least:
+/// O(n log n).
+std::optional<Point> place_under_ceiling(const Scene& scene, const Solid& room);
 
 }  // namespace patchlight

@@ -3,24 +3,19 @@
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "light/texture.h"
+#include "scene/model_face.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// A polygon counts as planar when no corner is farther from its plane than this share of the polygon's size.
-constexpr double planarity_tolerance = 1e-4;
-
-// A polygon counts as having an area when it is larger than this share of its squared perimeter.
-constexpr double relative_area_tolerance = 1e-12;
-
-// Farther away, squares of areas would come near the largest double. Metres.
-constexpr double farthest_vertex = 1e15;
-
-// Exchange areas are kept as floats: those of the small patches of a smaller model would be below the smallest. Metres.
+// Exchange areas are kept as floats: those of the small patches of a smaller model would be below the smallest. Meters.
 constexpr double shortest_model = 1e-12;
 
 // The checks of a polygon's outline take a time that goes as the square of this: a second for so many.
@@ -35,46 +30,49 @@ void check_bands(const Scene& scene) {
                                    "; expected as many");
 }
 
-// A mirror that lets light through would be a pane: what that reflects follows from its index.
-void check_specular_reflectance(const Scene& scene, const Material& material) {
-  for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band) {
-    const double share = material.specular_reflectance[band];
-    if (share >= 0 && share + material.reflectance[band] <= 1) continue;
-    throw InputError(scene.file, "material '" + material.name + "' has specular reflectance " + shortest(share) +
-                                     " and reflectance " + shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
-                                     material.name + ".reflectance=R,G,B");
+// Refuses a material for a finding, which ends with a hint, and names the setting that changes it.
+[[noreturn]] void refuse(const Scene& scene, const Material& material, const std::string& finding,
+                         const std::string& setting) {
+  throw InputError(
+      scene.file, "material '" + material.name + "' has " + finding + "read.settings " + material.name + "." + setting);
+}
+
+// A share of light beside the reflectance, in each band.
+void check_share(const Scene& scene, const Material& material, const Spectrum& values, const std::string& quantity) {
+  for (Eigen::Index band = 0; band < values.size(); ++band) {
+    if (values[band] >= 0 && values[band] + material.reflectance[band] <= 1) continue;
+    refuse(scene, material,
+           quantity + " " + shortest(values[band]) + " and reflectance " + shortest(material.reflectance[band]) +
+               "; expected numbers not below 0 whose sum is at most 1\nhint: ",
+           "reflectance=R,G,B");
   }
+}
+
+// A mirror that lets light through would be a pane: its reflection follows from its index.
+void check_specular_reflectance(const Scene& scene, const Material& material) {
+  check_share(scene, material, material.specular_reflectance, "specular reflectance");
   if ((material.specular_reflectance > 0).any() && (material.transmittance > 0).any())
-    throw InputError(scene.file,
-                     "material '" + material.name +
-                         "' has both a specular reflectance and a transmittance; expected one of them, since "
-                         "the index decides the reflection of a clear material\nhint: read.settings " +
-                         material.name + ".specular_reflectance=0");
+    refuse(scene, material,
+           "both a specular reflectance and a transmittance; expected one of them, since the index decides the "
+           "reflection of a clear material\nhint: ",
+           "specular_reflectance=0");
 }
 
 // A sheet scatters all that it does not absorb.
 void check_diffuse_transmittance(const Scene& scene, const Material& material) {
-  for (Eigen::Index band = 0; band < material.diffuse_transmittance.size(); ++band) {
-    const double tau = material.diffuse_transmittance[band];
-    if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
-    throw InputError(scene.file, "material '" + material.name + "' has diffuse transmittance " + shortest(tau) +
-                                     " and reflectance " + shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
-                                     material.name + ".reflectance=R,G,B");
-  }
+  check_share(scene, material, material.diffuse_transmittance, "diffuse transmittance");
   if (!(material.diffuse_transmittance > 0).any()) return;
-  for (const auto& [other, name] : {std::pair(&material.transmittance, "transmittance"),
-                                    std::pair(&material.specular_reflectance, "specular_reflectance")}) {
-    if (!(*other > 0).any()) continue;
-    throw InputError(scene.file, "material '" + material.name + "' has both a diffuse transmittance and a " + name +
-                                     "; expected one of them, as sheets scatter all that they do not absorb\nhint: "
-                                     "read.settings " +
-                                     material.name + "." + name + "=0");
+  for (const auto& [other, name] : {std::pair(&material.transmittance, std::string("transmittance")),
+                                    std::pair(&material.specular_reflectance, std::string("specular_reflectance"))}) {
+    if ((*other > 0).any())
+      refuse(scene, material,
+             "both a diffuse transmittance and a " + name +
+                 "; expected one of them, as sheets scatter all that they do not absorb\nhint: ",
+             name + "=0");
   }
 }
 
-// What gets through a sheet is the same both ways.
+// A sheet transmits the same both ways.
 void check_sheet(const Scene& scene, PolygonIndex index) {
   const Polygon& polygon = scene.polygons[index];
   if (!polygon.back_material) return;
@@ -92,43 +90,29 @@ void check_sheet(const Scene& scene, PolygonIndex index) {
                                                  "hint: read.settings MATERIAL.diffuse_transmittance=R,G,B");
 }
 
-void check_picture(const Scene& scene, const Material& material) {
-  if (!material.texture || !reflects_more_than_all(*material.texture)) return;
-  throw InputError(scene.file, "material '" + material.name +
-                                   "' has a picture that reflects more than 1 in places; expected 0 to 1 everywhere\n"
-                                   "hint: a darker picture or a smaller factor, or read.settings " +
-                                   material.name + ".reflectance=R,G,B");
-}
-
 void check_material(const Scene& scene, const Material& material) {
-  const std::string name = "material '" + material.name + "'";
   for (const double rho : material.reflectance) {
     if (rho >= 0 && rho <= 1) continue;
-    throw InputError(scene.file, name + " has reflectance " + shortest(rho) +
-                                     "; expected 0 to 1 in every band\nhint: fix Kd, or read.settings " +
-                                     material.name + ".reflectance=R,G,B");
+    refuse(scene, material, "reflectance " + shortest(rho) + "; expected 0 to 1 in every band\nhint: fix Kd, or ",
+           "reflectance=R,G,B");
   }
-  check_picture(scene, material);
-  for (Eigen::Index band = 0; band < material.transmittance.size(); ++band) {
-    const double tau = material.transmittance[band];
-    if (tau >= 0 && tau + material.reflectance[band] <= 1) continue;
-    throw InputError(scene.file, name + " has transmittance " + shortest(tau) + " and reflectance " +
-                                     shortest(material.reflectance[band]) +
-                                     "; expected numbers not below 0 whose sum is at most 1\nhint: read.settings " +
-                                     material.name + ".reflectance=R,G,B");
-  }
+  if (material.texture && reflects_more_than_all(*material.texture))
+    refuse(scene, material,
+           "a picture that reflects more than 1 in places; expected 0 to 1 everywhere\n"
+           "hint: a darker picture or a smaller factor, or ",
+           "reflectance=R,G,B");
+  check_share(scene, material, material.transmittance, "transmittance");
   check_specular_reflectance(scene, material);
   check_diffuse_transmittance(scene, material);
-  if (!(material.index >= 1 && std::isfinite(material.index))) {
-    throw InputError(scene.file, name + " has the index of refraction " + shortest(material.index) +
-                                     "; expected a number of 1 or more\nhint: read.settings " + material.name +
-                                     ".index=1.52");
-  }
+  if (!(material.index >= 1 && std::isfinite(material.index)))
+    refuse(scene, material,
+           "the index of refraction " + shortest(material.index) + "; expected a number of 1 or more\nhint: ",
+           "index=1.52");
   for (const double exitance : material.exitance) {
     if (exitance >= 0 && std::isfinite(exitance)) continue;
-    throw InputError(scene.file, name + " has exitance " + shortest(exitance) +
-                                     " W/m^2; expected a finite number not below 0\nhint: fix Ke, or read.settings " +
-                                     material.name + ".exitance=R,G,B");
+    refuse(scene, material,
+           "exitance " + shortest(exitance) + " W/m^2; expected a finite number not below 0\nhint: fix Ke, or ",
+           "exitance=R,G,B");
   }
 }
 
@@ -150,13 +134,13 @@ void check_polygon(const Scene& scene, PolygonIndex index) {
   const Vector area = area_vector(points);
   double perimeter = 0;
   for (std::size_t k = 0; k < points.size(); ++k) perimeter += (points[(k + 1) % points.size()] - points[k]).norm();
-  if (!(area.norm() > relative_area_tolerance * perimeter * perimeter)) {
+  if (!(area.norm() > tolerance_of_arithmetic * perimeter * perimeter)) {
     throw InputError(place_of(scene, polygon),
                      "this face has no area\nhint: remove it, or merge its repeated vertices");
   }
   const Vector normal = area.normalized();
   for (const Point& point : points) {
-    if (std::abs(normal.dot(point - points[0])) > planarity_tolerance * perimeter) {
+    if (std::abs(normal.dot(point - points[0])) > 1e-4 * perimeter) {
       throw InputError(place_of(scene, polygon),
                        "the corners of this face do not lie in one plane\nhint: cut it into triangles");
     }
@@ -176,11 +160,24 @@ Diagnostics remarks_of(const Scene& scene) {
 }
 
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon) {
-  const auto& corners = scene.polygons[polygon].corners;
+  return corner_points(scene, scene.polygons[polygon].corners);
+}
+
+std::vector<Point> corner_points(const Scene& scene, std::span<const std::uint32_t> outline) {
   std::vector<Point> points;
-  points.reserve(corners.size());
-  for (const std::uint32_t corner : corners) points.push_back(scene.vertices[corner]);
+  points.reserve(outline.size());
+  for (const std::uint32_t corner : outline) points.push_back(scene.vertices[corner]);
   return points;
+}
+
+double polygon_area(const Scene& scene, PolygonIndex polygon) {
+  return area_vector(corner_points(scene, polygon)).norm();
+}
+
+Box polygon_box(const Scene& scene, PolygonIndex polygon) {
+  Box box;
+  for (const std::uint32_t corner : scene.polygons[polygon].corners) box.extend(scene.vertices[corner]);
+  return box;
 }
 
 Vector front_normal(const Scene& scene, PolygonIndex polygon) {
@@ -258,23 +255,21 @@ Vector upright_axis(const Scene& scene) {
   }
   if (across.y() > much_more * across.z()) return Vector::UnitY();
   if (across.z() > much_more * across.y()) return Vector::UnitZ();
-  constexpr double cosine_of_30_degrees = 0.866;
-  const bool along_y = -shining.y() > cosine_of_30_degrees * shining.norm();
-  return along_y ? Vector::UnitY() : Vector::UnitZ();
+  const bool is_along_y = -shining.y() > 0.866 * shining.norm();  // within 30 degrees
+  return is_along_y ? Vector::UnitY() : Vector::UnitZ();
 }
 
 Box bounds(const Scene& scene) {
   Box box;
-  for (const Polygon& polygon : scene.polygons) {
-    for (const std::uint32_t corner : polygon.corners) box.extend(scene.vertices[corner]);
-  }
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) box.extend(polygon_box(scene, p));
   return box;
 }
 
 void check_vertices(const Scene& scene) {
   for (const Point& vertex : scene.vertices) {
     if (!vertex.allFinite()) throw InputError(scene.file, "a vertex is not finite; expected three finite coordinates");
-    if (vertex.cwiseAbs().maxCoeff() <= farthest_vertex) continue;
+    // Farther away, squares of areas would come near the largest double.
+    if (vertex.cwiseAbs().maxCoeff() <= 1e15) continue;
     throw InputError(scene.file, "a vertex lies over 1e15 m from the origin; expected a model of earthly size");
   }
   for (const Polygon& polygon : scene.polygons) {
@@ -301,6 +296,80 @@ void check(const Scene& scene) {
   for (const Material& material : scene.materials) check_material(scene, material);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) check_polygon(scene, p);
   check_size(scene);
+}
+
+const char* name_of(Projection projection) {
+  constexpr std::array names = {"perspective", "orthographic", "angular", "hemispherical", "panorama"};
+  return names[static_cast<std::size_t>(projection)];
+}
+
+std::optional<Projection> projection_named(const std::string& name) {
+  using enum Projection;
+  for (const Projection one : {perspective, orthographic, angular, hemispherical, panorama}) {
+    if (name == name_of(one)) return one;
+  }
+  return std::nullopt;
+}
+
+double usual_field_of_view(Projection projection) { return projection == Projection::perspective ? 50 : 180; }
+
+double largest_field_of_view(Projection projection) { return projection == Projection::angular ? 360 : 180; }
+
+bool has_extent(const Camera& camera) {
+  if (camera.projection == Projection::orthographic) return camera.height > 0 && std::isfinite(camera.height);
+  const double angle = camera.vertical_field_of_view;
+  const double largest = largest_field_of_view(camera.projection);
+  return angle > 0 && (camera.projection == Projection::perspective ? angle < largest : angle <= largest);
+}
+
+std::string place_of(const SensorGroup& group, std::size_t sensor) {
+  std::string place = "sensor " + std::to_string(sensor + 1) + " of '" + group.name + "'";
+  if (group.lines.empty()) return place;
+  return place + " (" + group.file + ":" + std::to_string(group.lines[std::min(sensor, group.lines.size() - 1)]) + ")";
+}
+
+std::vector<Sensor> all_sensors(const std::vector<SensorGroup>& groups) {
+  std::vector<Sensor> all;
+  for (const SensorGroup& group : groups) all.insert(all.end(), group.sensors.begin(), group.sensors.end());
+  return all;
+}
+
+ModelFace model_face(const Scene& scene, const Polygon& polygon) {
+  return {corner_points(scene, polygon.corners), polygon.file, polygon.line, polygon.face};
+}
+
+double area_of(const std::vector<ModelFace>& faces) {
+  double area = 0;
+  for (const ModelFace& face : faces) area += area_vector(face.corners).norm();
+  return area;
+}
+
+bool is_loss(DiagnosticCode code) {
+  return code == DiagnosticCode::left_out || code == DiagnosticCode::little_left_out;
+}
+
+std::set<std::string> objects_with_faces(const Scene& scene) {
+  std::vector<std::uint8_t> has_polygon(scene.groups.size(), 0);
+  for (const Polygon& polygon : scene.polygons) {
+    if (polygon.group < scene.groups.size()) has_polygon[polygon.group] = 1;
+  }
+  std::set<std::string> names;
+  for (std::size_t group = 0; group < scene.groups.size(); ++group) {
+    if (has_polygon[group] != 0 && !scene.groups[group].empty()) names.insert(scene.groups[group]);
+  }
+  return names;
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string listed(const Scene& scene, const std::vector<ModelFace>& faces) {
+  Polygon first;
+  first.file = faces.front().file;
+  first.line = faces.front().line;
+  first.group = static_cast<std::uint32_t>(scene.groups.size());  // unknown
+  return counted(faces.size(), "face") + (faces.size() == 1 ? " (" : " (first at ") + place_of(scene, first) + ")";
 }
 
 }  // namespace patchlight

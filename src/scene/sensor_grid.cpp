@@ -1,5 +1,6 @@
 #include "scene/sensor_grid.h"
 
+#include "base/tolerances.h"
 #include "scene/room_body.h"
 #include "scene/triangulate.h"
 
@@ -14,24 +15,15 @@
 namespace patchlight {
 namespace {
 
-// Cosine of 0.08 degrees.
-constexpr double level_cosine = 1 - 1e-6;
-
-// Coordinates of some formats have single precision.
-constexpr double grid_rounding = 1e-6;
-
-// An edge without direction, in steps of a millimetre, so that polygons that share it find each other.
+// An edge without direction, in steps of a millimeter, so that polygons that share it find each other.
 using EdgeKey = std::array<std::array<std::int64_t, 3>, 2>;
 
 EdgeKey edge_key(const Point& a, const Point& b) {
   const auto in_steps = [](const Point& p) {
-    constexpr double steps = 1000;  // per metre
-    return std::array{std::llround(steps * p.x()), std::llround(steps * p.y()), std::llround(steps * p.z())};
+    return std::array<std::int64_t, 3>{std::llround(1000 * p.x()), std::llround(1000 * p.y()),
+                                       std::llround(1000 * p.z())};
   };
-  const auto first = in_steps(a), second = in_steps(b);
-  EdgeKey key;
-  std::copy(first.begin(), first.end(), key[0].begin());
-  std::copy(second.begin(), second.end(), key[1].begin());
+  EdgeKey key = {in_steps(a), in_steps(b)};
   if (key[1] < key[0]) std::swap(key[0], key[1]);
   return key;
 }
@@ -57,20 +49,20 @@ std::vector<Edge> rim_of(const Floor& floor) {
 
 // The level unit direction along or across which most of the rim runs, of those of its longest edges.
 Vector main_direction(const std::vector<Edge>& rim, const Vector& up) {
-  constexpr std::size_t most_candidates = 200;
   constexpr double along = 0.9998;  // cosine of 1 degree
   std::vector<Vector> edges;
   for (const Edge& edge : rim) {
     const Vector way = edge[1] - edge[0];
     edges.push_back(way - way.dot(up) * up);
   }
-  // Lengths that are equal up to grid_rounding keep the order of the rim, so that a square room is not turned by it.
+  // Lengths that are equal up to tolerance_of_coordinates keep the order of the rim, so that a square room is not
+  // turned by it.
   const auto rounded_length = [](const Vector& edge) { return std::llround(1e6 * edge.norm()); };
   std::stable_sort(edges.begin(), edges.end(),
                    [&](const Vector& a, const Vector& b) { return rounded_length(a) > rounded_length(b); });
   Vector best = up.unitOrthogonal();
   double longest = 0;
-  for (std::size_t k = 0; k < std::min(edges.size(), most_candidates) && edges[k].norm() > 0; ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(edges.size(), 200) && edges[k].norm() > 0; ++k) {
     const Vector x = edges[k].normalized();
     double length = 0;
     for (const Vector& edge : edges) {
@@ -78,18 +70,12 @@ Vector main_direction(const std::vector<Edge>& rim, const Vector& up) {
       const double cosine = std::abs(edge.dot(x));
       if (cosine > along * own || cosine < std::sqrt(1 - along * along) * own) length += own;
     }
-    if (length > (1 + 1e-9) * longest) {
+    if (length > (1 + tolerance_of_shapes) * longest) {
       longest = length;
       best = x;
     }
   }
   return best;
-}
-
-double distance_from(const Edge& edge, const Point& point) {
-  const Vector way = edge[1] - edge[0];
-  const double along = std::clamp((point - edge[0]).dot(way) / way.squaredNorm(), 0.0, 1.0);
-  return (edge[0] + along * way - point).norm();
 }
 
 // Does a ray from the point along x, in the plane of x and y, cross the outline an odd number of times? The two ways of
@@ -108,7 +94,7 @@ bool is_inside(const std::vector<Point>& outline, const Point& point, const Vect
 
 double distance_from(const std::vector<Edge>& rim, const Point& point) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Edge& edge : rim) nearest = std::min(nearest, distance_from(edge, point));
+  for (const Edge& edge : rim) nearest = std::min(nearest, std::sqrt(squared_distance(point, edge[0], edge[1])));
   return nearest;
 }
 
@@ -136,13 +122,13 @@ double farthest_from_rim(const Floor& floor, const std::array<Vector, 3>& around
 
 bool is_level(const std::vector<Point>& face, const Vector& up) {
   const Vector area = area_vector(face);
-  return area.norm() > 0 && std::abs(area.normalized().dot(up)) >= level_cosine;
+  return area.norm() > 0 && std::abs(area.normalized().dot(up)) >= 1 - 1e-6;  // within 0.08 degrees
 }
 
 using Levels = std::map<double, Floor>;  // by their height, from below
 
 Levels levels_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
-  constexpr double one_height = 1e-3;  // metres
+  constexpr double one_height = 1e-3;  // meters
   Levels levels;
   for (const std::vector<Point>& face : faces) {
     if (!is_level(face, up)) continue;
@@ -155,22 +141,11 @@ Levels levels_of(const std::vector<std::vector<Point>>& faces, const Vector& up)
   return levels;
 }
 
-// The middle of the largest triangle of a face, inside of it even when it is not convex.
-Point point_on(const std::vector<Point>& face) {
-  Point middle = face[0];
-  double largest = 0;
-  for (const auto& [a, b, c] : triangles_of(face)) {
-    const double area = (b - a).cross(c - a).norm();
-    if (!(area > largest)) continue;
-    largest = area;
-    middle = (a + b + c) / 3;
-  }
-  return middle;
-}
-
 }  // namespace
 
-double cells_along(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - grid_rounding)); }
+double cells_along(double length, double spacing) {
+  return std::max(1.0, std::ceil(length / spacing - tolerance_of_coordinates));
+}
 
 SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edges, double spacing) {
   const double across = cells_along(edges[0].norm(), spacing);
@@ -189,14 +164,13 @@ SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edg
 }
 
 Floor floor_of(const std::vector<std::vector<Point>>& faces, const Vector& up) {
-  constexpr double thickest_slab = 0.6;  // metres
-  constexpr double same_area = 0.95;     // of the underside is over it
   const Levels levels = levels_of(faces, up);
   if (levels.empty()) return {{}, up};
   const auto lowest = levels.begin();
   for (auto above = std::next(lowest); above != levels.end(); ++above) {
-    if (above->first - lowest->first > thickest_slab) break;
-    if (area_of(above->second) >= same_area * area_of(lowest->second)) return above->second;
+    // A slab is at most 0.6 m thick, and its top as large as its underside, but for a twentieth.
+    if (above->first - lowest->first > 0.6) break;
+    if (area_of(above->second) >= 0.95 * area_of(lowest->second)) return above->second;
   }
   return lowest->second;
 }
@@ -206,11 +180,11 @@ Floor floor_of_room(const std::vector<std::vector<Point>>& faces, const Vector& 
   std::vector<std::vector<Point>> under_air;
   for (const std::vector<Point>& face : faces) {
     if (!is_level(face, up)) continue;
-    if (body.holds(point_on(face) + body.step() * up)) under_air.push_back(face);
+    if (body.holds(inner_point(face) + body.step() * up)) under_air.push_back(face);
   }
   const Levels levels = levels_of(under_air, up);
   const auto largest = std::max_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
-    return area_of(a.second) < (1 - grid_rounding) * area_of(b.second);
+    return area_of(a.second) < (1 - tolerance_of_coordinates) * area_of(b.second);
   });
   return largest == levels.end() ? floor_of(faces, up) : largest->second;
 }
@@ -278,7 +252,7 @@ SensorGroup floor_grid(const Floor& floor, double height, const GridSize& size) 
     const Point on_floor = all.sensors[k].point - height * floor.up;
     const bool is_free =
         is_over(floor, on_floor, {x, y}) &&
-        (size.from_walls == 0 || distance_from(rim, on_floor) >= (1 - grid_rounding) * size.from_walls);
+        (size.from_walls == 0 || distance_from(rim, on_floor) >= (1 - tolerance_of_coordinates) * size.from_walls);
     if (!is_free) continue;
     group.sensors.push_back(all.sensors[k]);
     group.cells.push_back(all.cells[k]);

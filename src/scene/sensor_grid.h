@@ -16,11 +16,11 @@ inline constexpr double most_sensors = 1e6;
 /// than a whole number of cells counts as that.
 double cells_along(double length, double spacing);
 
-/// A grid over a parallelogram from `corner` along two edges: cells of at most `spacing` each way, in metres, with a
+/// A grid over a parallelogram from `corner` along two edges: cells of at most `spacing` each way, in meters, with a
 /// sensor in the middle of each that faces edges[0] x edges[1]. Rows go along edges[0]. At most most_sensors cells.
 SensorGroup rectangle_grid(const Point& corner, const std::array<Vector, 2>& edges, double spacing);
 
-/// Level polygons at one height, in metres; they may share edges.
+/// Level polygons at one height, in meters; they may share edges.
 struct Floor {
   std::vector<std::vector<Point>> outlines;
   Vector up = Vector::UnitZ();
@@ -40,17 +40,17 @@ std::vector<std::vector<Point>> outlines_of(const Scene& scene, std::span<const 
 /// m^2
 double area_of(const Floor& floor);
 
-/// The rectangle around a floor, along the direction that most of its rim has, `height` metres above it: a corner and
+/// The rectangle around a floor, along the direction that most of its rim has, `height` meters above it: a corner and
 /// the two edges from it.
 std::array<Vector, 3> rectangle_over(const Floor& floor, double height);
 
-/// How a grid lies over a floor, metres.
+/// How a grid lies over a floor, meters.
 struct GridSize {
   double spacing = 0;     ///< cells have at most this spacing
   double from_walls = 0;  ///< a strip along the rim without cells
 };
 
-/// The largest cells that EN 12464-1 allows for an area with sides of these lengths, metres: p = 0.2 * 5^log10(d), at
+/// The largest cells that EN 12464-1 allows for an area with sides of these lengths, meters: p = 0.2 * 5^log10(d), at
 /// most 10 m, where d is the longer side, or the shorter one of an area at least twice as long as wide.
 double standard_spacing(double side, double other_side);
 

@@ -1,7 +1,6 @@
 #include "scene/shells.h"
 
 #include "scene/extent.h"
-#include "scene/weld.h"
 
 #include <algorithm>
 #include <array>
@@ -22,18 +21,9 @@ struct EdgeUse {
 
 // Per vertex that a polygon uses the first of those with which it is welded.
 std::vector<std::uint32_t> welded_vertices(const Scene& scene) {
+  const std::vector<std::uint32_t> used = used_vertices(scene);
+  const std::vector<std::uint32_t> stands_for = welded(corner_points(scene, used), weld_distance(scene));
   std::vector<std::uint32_t> place(scene.vertices.size(), 0);
-  for (const Polygon& polygon : scene.polygons) {
-    for (const std::uint32_t corner : polygon.corners) place[corner] = 1;
-  }
-  std::vector<std::uint32_t> used;
-  std::vector<Point> points;
-  for (std::uint32_t v = 0; v < place.size(); ++v) {
-    if (place[v] == 0) continue;
-    used.push_back(v);
-    points.push_back(scene.vertices[v]);
-  }
-  const std::vector<std::uint32_t> stands_for = welded(points, weld_distance(scene));
   for (std::size_t k = 0; k < used.size(); ++k) place[used[k]] = used[stands_for[k]];
   return place;
 }
@@ -113,7 +103,7 @@ std::vector<std::uint8_t> turned_polygons(const Scene& scene, const std::vector<
   std::vector<double> excess(count, 0);  // per root: the area turned like it minus that turned against it
   for (PolygonIndex p = 0; p < count; ++p) {
     const auto [root, turned] = forest.root(p);
-    const double area = area_vector(corner_points(scene, p)).norm();
+    const double area = polygon_area(scene, p);
     excess[root] += turned ? -area : area;
   }
   std::vector<std::uint8_t> result(count);

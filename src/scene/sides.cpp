@@ -1,13 +1,9 @@
 #include "patchlight/scene/sides.h"
 
-#include "patchlight/scene/scene.h"
-
 #include "base/rounded.h"
-#include "scene/dark_solids.h"
+#include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
-#include "scene/half_spaces.h"
-#include "scene/lamp_places.h"
 #include "scene/model_face.h"
 #include "scene/shells.h"
 #include "scene/simple_polygon.h"
@@ -17,27 +13,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
-constexpr std::size_t most_rim_corners = 1000;
 constexpr std::size_t most_lid_triangles = 1000;
-constexpr std::size_t most_corners_in_planes = 64;
 
-// How far the unit normals of a rim and of a face under it may differ; corners decide whether they share a plane.
-constexpr double largest_tilt = 0.05;
-
-// The rims of one shell as outlines of what would close it, which walk along each edge against its polygon. Nothing
-// where rims meet in a vertex.
+// The rims of one shell as outlines of faces that would close it, which walk along each edge against its polygon.
+// Nothing where rims meet in a vertex.
 std::optional<std::vector<std::vector<Point>>> outlines_of(const Scene& scene, const std::vector<RimEdge>& edges) {
   std::map<std::uint32_t, std::uint32_t> before;
   for (const RimEdge& edge : edges) {
@@ -62,109 +49,99 @@ struct FacesUnderRims {
   const Scene& scene;
   const Shells& shells;
   FaceTree tree;
-  double near;    // metres
-  double extent;  // metres, of the scene
+  double near;    // meters
+  double extent;  // meters, of the scene
 
-  bool is_closed(const std::vector<Point>& outline, PolygonIndex shell) const;
-  bool shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const;
-  bool can_close(const std::vector<Point>& outline, PolygonIndex shell) const;
+  // Do opaque faces of other shells fill the outline? The rest of it is then narrower than `near`.
+  bool is_closed(const std::vector<Point>& outline, PolygonIndex shell) const {
+    FlatFace rim = flat_face(outline);
+    // The corners decide whether faces share its plane.
+    const FaceQuery query{.box = with_margin(rim.box, near),
+                          .normal = rim.normal,
+                          .tilt = 0.05,
+                          .offset = rim.normal.dot(outline[0]),
+                          .tolerance = extent};
+    std::vector<std::vector<Point>> left;
+    for (const Triangle& triangle : triangles_of(outline)) left.emplace_back(triangle.begin(), triangle.end());
+    std::size_t triangles = 0;
+    tree.for_each(query, [&](PolygonIndex p) {
+      if (shells.shell[p] == shell || left.empty() || triangles > most_lid_triangles) return;
+      if (is_opening(scene, p) || is_sheet(scene, p) || !shares_plane(p, outline)) return;
+      for (const Triangle& triangle : triangles_of(corner_points(scene, p))) {
+        if (++triangles <= most_lid_triangles) left = beside(left, triangle, near);
+      }
+    });
+    return left.empty();
+  }
+
+  bool shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const {
+    const Vector& normal = tree.face(polygon).normal;
+    const Point& on_plane = scene.vertices[scene.polygons[polygon].corners[0]];
+    return std::all_of(outline.begin(), outline.end(),
+                       [&](const Point& corner) { return std::abs(normal.dot(corner - on_plane)) <= near; });
+  }
+
+  bool can_close(const std::vector<Point>& outline, PolygonIndex shell) const {
+    return outline.size() >= 3 && !is_narrow(outline, near) && !crosses_itself(outline) && is_closed(outline, shell);
+  }
+
+  // The corners from `first` on, as many as lie in one plane, when faces fill the polygon that they are.
   std::optional<std::vector<Point>> closed_run(const std::vector<Point>& outline, std::size_t first,
-                                               PolygonIndex shell) const;
-  std::optional<std::vector<Triangle>> lids_over(std::vector<Point> outline, PolygonIndex shell) const;
-  std::optional<std::vector<Triangle>> lids(const std::vector<RimEdge>& edges) const;
+                                               PolygonIndex shell) const {
+    std::vector<Point> run;
+    Vector normal = Vector::Zero();
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Point& corner = outline[(first + k) % outline.size()];
+      const bool has_plane = run.size() >= 3 && !is_narrow(run, near);
+      if (has_plane && normal.isZero(0)) normal = plane_normal(run);
+      if (has_plane && std::abs(normal.dot(corner - run.front())) > near) break;
+      run.push_back(corner);
+    }
+    if (!can_close(run, shell)) return std::nullopt;
+    return run;
+  }
+
+  // An outline in several planes, for example of a wall with a door, loses runs of corners that faces fill, one by one.
+  std::optional<std::vector<Triangle>> lids_over(std::vector<Point> outline, PolygonIndex shell) const {
+    std::vector<Triangle> lids;
+    const auto add = [&](const std::vector<Point>& lid) {
+      const std::vector<Triangle> triangles = triangles_of(lid);
+      lids.insert(lids.end(), triangles.begin(), triangles.end());
+    };
+    while (!can_close(outline, shell)) {
+      if (outline.size() > 64) return std::nullopt;
+      std::vector<Point> longest;
+      std::size_t begin = 0;
+      for (std::size_t first = 0; first < outline.size(); ++first) {
+        std::optional<std::vector<Point>> run = closed_run(outline, first, shell);
+        if (!run || run->size() <= longest.size() || run->size() >= outline.size()) continue;
+        longest = std::move(*run);
+        begin = first;
+      }
+      if (longest.empty()) return std::nullopt;
+      add(longest);
+      // Its first and its last corner stay.
+      std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(begin), outline.end());
+      outline.erase(outline.begin() + 1, outline.begin() + static_cast<std::ptrdiff_t>(longest.size()) - 1);
+    }
+    add(outline);
+    return lids;
+  }
+
+  // Triangles over all rims of a shell; nothing when one of them stays open.
+  std::optional<std::vector<Triangle>> lids(const std::vector<RimEdge>& edges) const {
+    if (edges.size() > 1000) return std::nullopt;
+    const auto outlines = outlines_of(scene, edges);
+    if (!outlines) return std::nullopt;
+    std::vector<Triangle> lids;
+    for (const std::vector<Point>& outline : *outlines) {
+      const auto over = lids_over(outline, shells.shell[edges.front().polygon]);
+      if (!over) return std::nullopt;
+      lids.insert(lids.end(), over->begin(), over->end());
+    }
+    return lids;
+  }
 };
-
-bool FacesUnderRims::shares_plane(PolygonIndex polygon, const std::vector<Point>& outline) const {
-  const Vector& normal = tree.face(polygon).normal;
-  const Point& on_plane = scene.vertices[scene.polygons[polygon].corners[0]];
-  return std::all_of(outline.begin(), outline.end(),
-                     [&](const Point& corner) { return std::abs(normal.dot(corner - on_plane)) <= near; });
-}
-
-// Do opaque faces of other shells fill the outline? What is left of it beside them is then narrower than `near`.
-bool FacesUnderRims::is_closed(const std::vector<Point>& outline, PolygonIndex shell) const {
-  FlatFace rim = flat_face(outline);
-  const Vector margin = Vector::Constant(near);
-  const FaceQuery query{Box(rim.box.min() - margin, rim.box.max() + margin),
-                        std::numeric_limits<double>::infinity(),
-                        rim.normal,
-                        largest_tilt,
-                        rim.normal.dot(outline[0]),
-                        extent};
-  std::vector<std::vector<Point>> left;
-  for (const Triangle& triangle : triangles_of(outline)) left.emplace_back(triangle.begin(), triangle.end());
-  std::size_t triangles = 0;
-  tree.for_each(query, [&](PolygonIndex p) {
-    if (shells.shell[p] == shell || left.empty() || triangles > most_lid_triangles) return;
-    if (is_opening(scene, p) || is_sheet(scene, p) || !shares_plane(p, outline)) return;
-    for (const Triangle& triangle : triangles_of(corner_points(scene, p))) {
-      if (++triangles <= most_lid_triangles) left = beside(left, triangle, near);
-    }
-  });
-  return left.empty();
-}
-
-bool FacesUnderRims::can_close(const std::vector<Point>& outline, PolygonIndex shell) const {
-  return outline.size() >= 3 && !is_narrow(outline, near) && !crosses_itself(outline) && is_closed(outline, shell);
-}
-
-// The corners from `first` on, as many as lie in one plane, when faces fill the polygon that they are.
-std::optional<std::vector<Point>> FacesUnderRims::closed_run(const std::vector<Point>& outline, std::size_t first,
-                                                             PolygonIndex shell) const {
-  std::vector<Point> run;
-  Vector normal = Vector::Zero();
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const Point& corner = outline[(first + k) % outline.size()];
-    const bool has_plane = run.size() >= 3 && !is_narrow(run, near);
-    if (has_plane && normal.isZero(0)) normal = plane_normal(run);
-    if (has_plane && std::abs(normal.dot(corner - run.front())) > near) break;
-    run.push_back(corner);
-  }
-  if (!can_close(run, shell)) return std::nullopt;
-  return run;
-}
-
-// Of an outline that lies in several planes, as that of a wall with a door, which ends at floor, ceiling and walls,
-// runs of corners that faces fill are cut off one after the other.
-std::optional<std::vector<Triangle>> FacesUnderRims::lids_over(std::vector<Point> outline, PolygonIndex shell) const {
-  std::vector<Triangle> lids;
-  const auto add = [&](const std::vector<Point>& lid) {
-    const std::vector<Triangle> triangles = triangles_of(lid);
-    lids.insert(lids.end(), triangles.begin(), triangles.end());
-  };
-  while (!can_close(outline, shell)) {
-    if (outline.size() > most_corners_in_planes) return std::nullopt;
-    std::vector<Point> longest;
-    std::size_t begin = 0;
-    for (std::size_t first = 0; first < outline.size(); ++first) {
-      std::optional<std::vector<Point>> run = closed_run(outline, first, shell);
-      if (!run || run->size() <= longest.size() || run->size() >= outline.size()) continue;
-      longest = std::move(*run);
-      begin = first;
-    }
-    if (longest.empty()) return std::nullopt;
-    add(longest);
-    // Its first and its last corner stay.
-    std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(begin), outline.end());
-    outline.erase(outline.begin() + 1, outline.begin() + static_cast<std::ptrdiff_t>(longest.size()) - 1);
-  }
-  add(outline);
-  return lids;
-}
-
-// Triangles over all rims of a shell; nothing when one of them stays open.
-std::optional<std::vector<Triangle>> FacesUnderRims::lids(const std::vector<RimEdge>& edges) const {
-  if (edges.size() > most_rim_corners) return std::nullopt;
-  const auto outlines = outlines_of(scene, edges);
-  if (!outlines) return std::nullopt;
-  std::vector<Triangle> lids;
-  for (const std::vector<Point>& outline : *outlines) {
-    const auto over = lids_over(outline, shells.shell[edges.front().polygon]);
-    if (!over) return std::nullopt;
-    lids.insert(lids.end(), over->begin(), over->end());
-  }
-  return lids;
-}
 
 // Do all these polygons lie in one plane? Then nothing closes them to a solid.
 bool are_flat(const Scene& scene, const std::vector<PolygonIndex>& polygons, double near) {
@@ -237,12 +214,11 @@ Diagnostics notes_on(const Count& count) {
   return notes;
 }
 
-// What is said of luminaires just outside of a room without any other: most often their position is wrong by the
-// thickness of a ceiling. A room is a closed solid that looks inward and is most of the scene.
+// The note on luminaires just outside of a room without any other: often their position is wrong by the thickness of a
+// ceiling. A room is a closed solid that looks inward and is most of the scene.
 std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) {
-  constexpr double thickest = 1;  // m
   const double half = bounds(scene).volume() / 2;
-  double least = thickest;
+  double least = 1;  // m
   const Luminaire* nearest = nullptr;
   for (const Solid& solid : dark) {
     if (!solid.fronts_face_inside || solid.box.volume() <= half) continue;
@@ -261,11 +237,8 @@ std::string nearest_outside(const Scene& scene, const std::vector<Solid>& dark) 
 
 std::string name_of_solid(const Scene& scene, const Solid& solid) {
   const Polygon& first = scene.polygons[solid.polygons.front()];
-  return std::string("'")
-      .append(group_name(scene, first.group))
-      .append("' (")
-      .append(place_of(scene, first))
-      .append(")");
+  const std::string group = group_name(scene, first.group);
+  return "'" + group + "' (" + place_of(scene, first) + ")";
 }
 
 // At 2 * polygon + side.
@@ -278,25 +251,13 @@ SideMask either(SideMask first, const SideMask& second) {
   return first;
 }
 
-// Leaves these sides out, or keeps them when they are wanted all the same.
-KeptSides with_sides(KeptSides kept, const SideMask& mask, bool wanted) {
-  for (PolygonIndex p = 0; p < kept.front.size(); ++p) {
-    if (mask[at(p, Side::front)]) kept.front[p] = wanted;
-    if (mask[at(p, Side::back)]) kept.back[p] = wanted;
-  }
-  return kept;
-}
-
 // The sides of polygons that lie beside this box for sure, sharing no volume with it, and do not look into it.
 SideMask sides_beside(const Scene& scene, const Box& room) {
   SideMask mask(2 * scene.polygons.size(), 0);
   const double extent = extent_of(scene);
-  const Vector touching = Vector::Constant(1e-6 * extent);
-  const Box inner(room.min() + touching, room.max() - touching);
+  const Box inner = with_margin(room, -tolerance_of_coordinates * extent);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    Box box;
-    for (const std::uint32_t corner : scene.polygons[p].corners) box.extend(scene.vertices[corner]);
-    if (box.intersects(inner)) continue;
+    if (polygon_box(scene, p).intersects(inner)) continue;
     for (const Side side : {Side::front, Side::back})
       mask[at(p, side)] = !room.contains(point_before(scene, p, side, extent));
   }
@@ -314,13 +275,10 @@ SideMask sides_outside(const Scene& scene, const Shells& shells, const std::vect
   return mask;
 }
 
-// How far over a plane a luminaire may lie by rounding, as a share of the extent.
-constexpr double plane_rounding = 1e-12;
-
 bool shines_before(const Luminaire& luminaire, const Point& on_plane, const Vector& normal, double extent) {
   const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
   const double height = normal.dot(luminaire.position - on_plane) + (sphere != nullptr ? sphere->radius : 0);
-  return height > plane_rounding * extent;
+  return height > tolerance_of_arithmetic * extent;
 }
 
 // The sides before which nothing lies and no light is: they see nothing. Lamps shine all the same.
@@ -347,14 +305,19 @@ struct DarkSides {
   SideMask turned_away;
 };
 
-KeptSides without(KeptSides kept, DarkSides dark, const KeptInTheDark& wanted) {
+// Leaves these sides out, or keeps them on request.
+KeptSides without(KeptSides kept, const DarkSides& dark, const KeptInTheDark& wanted) {
   for (std::size_t k = 0; k < dark.unreached.size(); ++k) {
-    if (dark.unreached[k]) dark.turned_away[k] = 0;
-    kept.unreached += dark.unreached[k];
-    kept.turned_away += dark.turned_away[k];
+    std::uint8_t& is_kept_side = (k % 2 == 0 ? kept.front : kept.back)[k / 2];
+    if (dark.unreached[k]) {
+      ++kept.unreached;
+      is_kept_side = wanted.unreached;
+    } else if (dark.turned_away[k]) {
+      ++kept.turned_away;
+      is_kept_side = wanted.turned_away;
+    }
   }
-  kept = with_sides(std::move(kept), dark.unreached, wanted.unreached);
-  return with_sides(std::move(kept), dark.turned_away, wanted.turned_away);
+  return kept;
 }
 
 // Light that arrives on one side of a sheet leaves the other: both are in the dark, or none.
@@ -369,14 +332,8 @@ DarkSides with_whole_sheets(DarkSides dark, const Scene& scene) {
   return dark;
 }
 
-// What is lit of a solid.
-struct Lit {
-  bool inside = false;
-  bool outside = false;
-};
-
-// Clear faces and sheets let light through, in and out.
-Lit lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
+// The sides of a solid that are lit. Clear faces and sheets let light through, in and out.
+LampPlaces lit_sides(const Solid& solid, const LampPlaces& lamps, bool daylight) {
   const bool from_outside = daylight || lamps.outside;
   const bool gets_out = lamps.inside && solid.has_opening;
   return {lamps.inside || (from_outside && solid.has_opening), !lamps.inside || from_outside || gets_out};
@@ -407,8 +364,8 @@ LitSolids lit_solids(const Scene& scene, const Shells& shells, const std::vector
       lit.around_all_lamps.push_back(std::move(solid));
   }
   if (!holds_lamp) lit.outside = nearest_outside(scene, lit.dark);
-  // What other faces close may be dark inside; of those faces it is not known which part lies inside, so that the dark
-  // outside of one that holds all lamps is not looked for.
+  // A solid that other faces close may be dark inside. Which part of those faces lies inside is unknown, so the outside
+  // of one that holds all lamps is kept.
   for (Solid& solid : standing_solids(scene, shells)) {
     if (!lit_sides(solid, places_of(lamps, solid, extent), daylight).inside) lit.dark.push_back(std::move(solid));
   }
@@ -432,27 +389,19 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   kept.notes = notes_on(lit.count);
   if (!lit.outside.empty() && !in_the_dark.unreached)
     kept.notes.push_back({DiagnosticCode::misplaced_luminaire, lit.outside});
-  // Where nothing is lit, what stands in a dark solid is no darker than the rest.
+  // Where nothing is lit, things in a dark solid are no darker than the rest.
   const bool any_light = daylight || !lamps.empty();
   const SideMask unreached = any_light ? sides_within(scene, shells, lit.dark) : inner_sides(scene, shells, lit.dark);
   SideMask turned_away = sides_outside(scene, shells, lit.around_all_lamps);
   if (any_light && !daylight) turned_away = either(std::move(turned_away), sides_before_nothing(scene, extent));
-  DarkSides dark_sides = with_whole_sheets({unreached, std::move(turned_away)}, scene);
-  return without(std::move(kept), std::move(dark_sides), in_the_dark);
+  return without(std::move(kept), with_whole_sheets({unreached, std::move(turned_away)}, scene), in_the_dark);
 }
 
 }  // namespace
 
 const char* name_of(Sides sides) {
-  switch (sides) {
-    case Sides::automatic:
-      return "auto";
-    case Sides::front:
-      return "front";
-    case Sides::both:
-      return "both";
-  }
-  return "";
+  constexpr std::array names = {"auto", "front", "both"};
+  return names[static_cast<std::size_t>(sides)];
 }
 
 std::vector<Solid> dark_solids(const Scene& scene) {
@@ -480,7 +429,7 @@ KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_th
 double kept_area(const Scene& scene, const KeptSides& sides) {
   double area = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    area += (sides.front[p] + sides.back[p]) * area_vector(corner_points(scene, p)).norm();
+    area += (sides.front[p] + sides.back[p]) * polygon_area(scene, p);
   }
   return area;
 }

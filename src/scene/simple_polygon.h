@@ -1,6 +1,7 @@
 #pragma once
 
 #include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
 #include <array>
 #include <cstdint>
@@ -29,11 +30,21 @@ bool crosses_itself(std::span<const Point> polygon);
 /// narrow ones are left out. Nothing when there are over 100 crossings.
 std::vector<std::vector<Point>> cut_at_crossings(std::vector<Point> polygon, double width);
 
-/// What is left of convex pieces of a plane beside a triangle in it, in convex pieces; narrow ones are left out.
+/// The parts of convex pieces of a plane beside a triangle in it, in convex pieces; narrow ones are left out.
 std::vector<std::vector<Point>> beside(const std::vector<std::vector<Point>>& pieces,
                                        const std::array<Point, 3>& triangle, double width);
 
 /// The polygon in triangles, provided that they cover it without turning over: none has negative area.
 std::optional<std::vector<std::array<std::uint32_t, 3>>> proper_triangles(std::span<const Point> polygon);
+
+/// The pieces of one polygon.
+struct Pieces {
+  std::vector<Polygon> polygons;         ///< simple and planar, with area
+  std::vector<Point> new_vertices;       ///< numbered after those of the scene
+  std::optional<DiagnosticCode> defect;  ///< zero_area, self_intersecting or non_planar; nothing when it stays whole
+};
+
+/// Cuts a polygon of the scene into polygons for the mesher. Pieces narrower than `width` are left out.
+Pieces pieces_of(const Scene& scene, const Polygon& polygon, double width);
 
 }  // namespace patchlight

@@ -1,49 +1,30 @@
 #include "scene/solids.h"
 
-#include "scene/triangulate.h"
+#include "base/tolerances.h"
+#include "scene/face_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <variant>
 
 namespace patchlight {
 namespace {
 
-// How far before its side a point is looked for, as a share of the scene's extent.
-constexpr double step_off_surface = 1e-6;
-
-// Corners that touch a wall are looked for nearer to the middle by this share.
-constexpr double inset = 1e-4;
-
-// A closed surface encloses a volume when it is larger than this share of its area times its extent; the fold of two
-// coincident polygons does not.
-constexpr double volume_tolerance = 1e-9;
-
-// Tests of boxes and triangles, some 10 ns each.
+// Tests of boxes and triangles, about 10 ns each.
 constexpr double most_tests = 2e7;
 
-Point inner_point(const std::vector<Point>& corners) {
-  double largest = 0;
-  Point middle = corners[0];
-  for (const auto& [a, b, c] : triangulate(corners)) {
-    const double area = (corners[b] - corners[a]).cross(corners[c] - corners[a]).norm();
-    if (area <= largest) continue;
-    largest = area;
-    middle = (corners[a] + corners[b] + corners[c]) / 3;
-  }
-  return middle;
-}
-
-// No vertex lies before a face as seen from inside. What has its corners in a solid lies in it as a whole only then.
+// No vertex lies before a face as seen from inside. Only then a polygon with all corners in a solid lies in it.
 bool is_convex(const Solid& solid) {
-  const double tolerance = step_off_surface * solid.box.diagonal().norm();
+  const double tolerance = tolerance_of_coordinates * solid.box.diagonal().norm();
   const double outward = solid.fronts_face_inside ? -1 : 1;
-  return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const std::array<Point, 3>& of) {
+  return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const Triangle& of) {
     const Vector normal = outward * (of[1] - of[0]).cross(of[2] - of[0]).normalized();
-    return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const std::array<Point, 3>& other) {
+    return std::all_of(solid.triangles.begin(), solid.triangles.end(), [&](const Triangle& other) {
       return std::all_of(other.begin(), other.end(),
                          [&](const Point& vertex) { return normal.dot(vertex - of[0]) < tolerance; });
     });
@@ -52,9 +33,8 @@ bool is_convex(const Solid& solid) {
 
 bool lies_within(const Scene& scene, PolygonIndex polygon, Side side, const Solid& solid) {
   const double extent = solid.box.diagonal().norm();
-  const Vector step = step_before(scene, polygon, side, extent);
   const std::vector<Point> corners = corners_before(scene, polygon, side, extent);
-  return holds(solid, inner_point(corner_points(scene, polygon)) + step) &&
+  return holds(solid, point_before(scene, polygon, side, extent)) &&
          std::all_of(corners.begin(), corners.end(), [&](const Point& corner) { return holds(solid, corner); });
 }
 
@@ -67,18 +47,89 @@ std::vector<std::size_t> largest_first(std::span<const Solid> solids) {
   return order;
 }
 
-std::vector<Box> boxes_of(const Scene& scene) {
-  std::vector<Box> boxes(scene.polygons.size());
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const std::uint32_t corner : scene.polygons[p].corners) boxes[p].extend(scene.vertices[corner]);
+LampShape shape_of_side(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
+  std::vector<Point> corners = corner_points(scene, polygon);
+  LampShape shape;
+  const Vector step = step_before(scene, polygon, side, extent);
+  for (Point& corner : corners) shape.box.extend(corner += step);
+  shape.triangles = triangles_of(corners);
+  shape.middle = point_before(scene, polygon, side, extent);
+  return shape;
+}
+
+LampShape shape_of(const Luminaire& luminaire) {
+  LampShape shape;
+  shape.middle = luminaire.position;
+  if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) shape.radius = sphere->radius;
+  shape.box = with_margin(Box(shape.middle), shape.radius);
+  return shape;
+}
+
+bool comes_near(const Point& point, const Solid& solid, double reach) {
+  if (!with_margin(solid.box, reach).contains(point)) return false;
+  return std::any_of(solid.triangles.begin(), solid.triangles.end(),
+                     [&](const Triangle& triangle) { return distance_to(triangle, point) <= reach; });
+}
+
+// The length of the part of a segment that lies in a triangle of the same plane, made wider by `margin`.
+double length_within(const std::array<Point, 2>& segment, const Triangle& triangle, const Vector& normal,
+                     double margin) {
+  double first = 0;
+  double last = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector inward = normal.cross(triangle[(k + 1) % 3] - triangle[k]).normalized();
+    const double from = inward.dot(segment[0] - triangle[k]) + margin;
+    const double to = inward.dot(segment[1] - triangle[k]) + margin;
+    if (from < 0 && to < 0) return 0;
+    if (from < 0) first = std::max(first, from / (from - to));
+    if (to < 0) last = std::min(last, from / (from - to));
   }
-  return boxes;
+  return std::max(0.0, last - first) * (segment[1] - segment[0]).norm();
+}
+
+// Does a triangle of a lamp pass through one of a solid, farther than `near` on either side? Where it does, it crosses
+// the plane of the latter in a segment.
+bool passes_through(const Triangle& lamp, const Triangle& triangle, double near) {
+  const Vector normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalized();
+  std::array<double, 3> height{};
+  for (std::size_t k = 0; k < 3; ++k) height[k] = normal.dot(lamp[k] - triangle[0]);
+  const auto [lowest, highest] = std::minmax_element(height.begin(), height.end());
+  if (!(*lowest<-near&& * highest> near)) return false;
+  std::array<Point, 2> crossing;
+  std::size_t ends = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if ((height[k] < 0) == (height[next] < 0)) continue;
+    crossing[ends++] = lamp[k] + height[k] / (height[k] - height[next]) * (lamp[next] - lamp[k]);
+  }
+  // A shorter way through only touches its outline.
+  return length_within(crossing, triangle, normal, near) > 8 * near;
+}
+
+bool passes_through(const LampShape& lamp, const Solid& solid, double near) {
+  for (const Triangle& triangle : solid.triangles) {
+    Box box(triangle[0]);
+    box.extend(triangle[1]).extend(triangle[2]);
+    if (!with_margin(box, near).intersects(lamp.box)) continue;
+    for (const Triangle& part : lamp.triangles) {
+      if (passes_through(part, triangle, near)) return true;
+    }
+  }
+  return false;
+}
+
+LampPlaces places_of(const LampShape& lamp, const Solid& solid, double near) {
+  if (!with_margin(solid.box, near).intersects(lamp.box)) return {.inside = false, .outside = true};
+  if (comes_near(lamp.middle, solid, lamp.radius + near) || passes_through(lamp, solid, near))
+    return {.inside = true, .outside = true};
+  const bool held = holds(solid, lamp.middle);
+  return {.inside = held, .outside = !held};
 }
 
 }  // namespace
 
 std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> polygons, const Shells& shells,
-                              std::vector<std::array<Point, 3>> lids) {
+                              std::vector<Triangle> lids) {
   Solid solid;
   solid.triangles = std::move(lids);
   for (const PolygonIndex p : polygons) {
@@ -86,7 +137,8 @@ std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> poly
     solid.has_opening = solid.has_opening || is_opening(scene, p) || is_sheet(scene, p);
     for (const Point& corner : corners) solid.box.extend(corner);
     if (shells.turned[p]) std::reverse(corners.begin(), corners.end());
-    for (const auto& [a, b, c] : triangulate(corners)) solid.triangles.push_back({corners[a], corners[b], corners[c]});
+    const std::vector<Triangle> triangles = triangles_of(corners);
+    solid.triangles.insert(solid.triangles.end(), triangles.begin(), triangles.end());
   }
   solid.polygons = std::move(polygons);
 
@@ -99,7 +151,8 @@ std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> poly
     area += (b - a).cross(c - a).norm() / 2;
   }
   solid.fronts_face_inside = volume < 0;
-  if (std::abs(volume) <= volume_tolerance * area * solid.box.diagonal().norm()) return std::nullopt;
+  // The fold of two coincident polygons encloses no volume.
+  if (std::abs(volume) <= tolerance_of_shapes * area * solid.box.diagonal().norm()) return std::nullopt;
   return solid;
 }
 
@@ -129,7 +182,8 @@ bool holds(const Solid& solid, const Point& point) {
 }
 
 Vector step_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
-  return (side == Side::front ? step_off_surface : -step_off_surface) * extent * front_normal(scene, polygon);
+  return (side == Side::front ? tolerance_of_coordinates : -tolerance_of_coordinates) * extent *
+         front_normal(scene, polygon);
 }
 
 Point point_before(const Scene& scene, PolygonIndex polygon, Side side, double extent) {
@@ -140,7 +194,7 @@ std::vector<Point> corners_before(const Scene& scene, PolygonIndex polygon, Side
   std::vector<Point> corners = corner_points(scene, polygon);
   const Point middle = inner_point(corners);
   const Vector step = step_before(scene, polygon, side, extent);
-  for (Point& corner : corners) corner += inset * (middle - corner) + step;
+  for (Point& corner : corners) corner += 1e-4 * (middle - corner) + step;
   return corners;
 }
 
@@ -156,7 +210,8 @@ std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, 
 
 std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids) {
   std::vector<std::uint8_t> within = inner_sides(scene, shells, solids);
-  const std::vector<Box> boxes = boxes_of(scene);
+  std::vector<Box> boxes;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) boxes.push_back(polygon_box(scene, p));
   double tests = 0;
   for (const std::size_t k : largest_first(solids)) {
     const Solid& solid = solids[k];
@@ -176,6 +231,54 @@ std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells,
     }
   }
   return within;
+}
+
+// Ericson 2005, Real-Time Collision Detection, section 5.1.5, by the regions of the plane: the nearest point lies in
+// the triangle or on one of its edges.
+double distance_to(const Triangle& triangle, const Point& point) {
+  const auto& [a, b, c] = triangle;
+  const Vector normal = (b - a).cross(c - a);
+  bool within = normal.squaredNorm() > 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point& from = triangle[k];
+    const Vector edge = triangle[(k + 1) % 3] - from;
+    const double length = edge.squaredNorm();
+    const double along = length > 0 ? std::clamp(edge.dot(point - from) / length, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (point - from - along * edge).norm());
+    within = within && normal.cross(edge).dot(point - from) >= 0;
+  }
+  return within ? std::min(nearest, std::abs(normal.normalized().dot(point - a))) : nearest;
+}
+
+double distance_to(const Solid& solid, const Point& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : solid.triangles) least = std::min(least, distance_to(triangle, point));
+  return least;
+}
+
+std::vector<LampShape> lamp_shapes(const Scene& scene, double extent) {
+  std::vector<LampShape> shapes;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back}) {
+      if (emits(scene, p, side)) shapes.push_back(shape_of_side(scene, p, side, extent));
+    }
+  }
+  for (const Luminaire& luminaire : scene.luminaires) shapes.push_back(shape_of(luminaire));
+  return shapes;
+}
+
+LampPlaces places_of(const std::vector<LampShape>& lamps, const Solid& solid, double extent) {
+  // Half of the way by which point_before() steps off a side, so that a lamp never lies on the polygon it shines from.
+  const double near = tolerance_of_coordinates / 2 * extent;
+  LampPlaces all;
+  for (const LampShape& lamp : lamps) {
+    const LampPlaces one = places_of(lamp, solid, near);
+    all.inside = all.inside || one.inside;
+    all.outside = all.outside || one.outside;
+    if (all.inside && all.outside) return all;
+  }
+  return all;
 }
 
 }  // namespace patchlight

@@ -3,8 +3,8 @@
 #include "patchlight/scene/scene.h"
 
 #include "scene/shells.h"
+#include "scene/triangulate.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,13 +18,13 @@ struct Solid {
   bool fronts_face_inside = false;  ///< those of the polygons that are not turned
   bool has_opening = false;         ///< a clear face or a sheet: light gets in and out
   Box box;
-  std::vector<std::array<Point, 3>> triangles;  ///< oriented as the polygons
+  std::vector<Triangle> triangles;  ///< oriented as the polygons
 };
 
 /// The solid of these polygons of one shell and of lids over its rims, which are oriented as the polygons once those
 /// turned are turned back; nothing when it has no volume.
 std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> polygons, const Shells& shells,
-                              std::vector<std::array<Point, 3>> lids = {});
+                              std::vector<Triangle> lids = {});
 
 /// The solids of closed shells.
 std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells);
@@ -50,7 +50,39 @@ std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, 
 
 /// At 2 * polygon + side 1 when the side faces the inside of one of these solids: it belongs to the solid, or
 /// point_before() and the like of all its corners lie within. Looks for at most 2e7 tests of a box or triangle, a
-/// fraction of a second, in the largest solids first; what it does not come to is 0.
+/// fraction of a second, in the largest solids first; the rest is 0.
 std::vector<std::uint8_t> sides_within(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
+
+/// A source of light as solids see it: the triangles of an emitting side, moved just before it, or a ball around a
+/// luminaire, which has no triangles.
+struct LampShape {
+  std::vector<Triangle> triangles;
+  Point middle = Point::Zero();  ///< a point of it
+  double radius = 0;             ///< of a ball, meters; 0 for one without extent
+  Box box;
+};
+
+/// The shapes of every side that emits and of every luminaire.
+std::vector<LampShape> lamp_shapes(const Scene& scene, double extent);
+
+/// The distance of a point to the nearest triangle of a solid, m.
+double distance_to(const Solid& solid, const Point& point);
+
+/// The distance of a point to a triangle, m.
+double distance_to(const Triangle& triangle, const Point& point);
+
+/// Where a lamp lies with respect to a closed solid: both when it crosses the surface, or comes so near to it that
+/// rounding decides.
+struct LampPlaces {
+  bool inside = false;
+  bool outside = false;
+};
+
+/// The places of all lamps together. Lamps within 5e-7 of the scene's `extent` of the surface count as inside and
+/// outside, so that no light is lost. O(lamps x triangles of the solid).
+LampPlaces places_of(const std::vector<LampShape>& lamps, const Solid& solid, double extent);
+
+/// The dark solids of kept_sides(): bodies that no light gets into. None in a scene without light.
+std::vector<Solid> dark_solids(const Scene& scene);
 
 }  // namespace patchlight

@@ -1,21 +1,62 @@
 #include "scene/spectral_bands.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "light/photometry.h"
-#include "scene/all_spectra.h"
+#include "scene/photometric_web.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <cstddef>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// What rounding makes of numbers of about 1.
-constexpr double alike_within = 1e-12;
+// Calls visit(values, const SampledSpectrum*) for all reflectances and transmittances of a scene, const or not, that
+// are not empty, with their spectra by wavelength or null.
+void visit_shares(auto& scene, const auto& visit) {
+  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
+    if (values.size() > 0) visit(values, spectrum);
+  };
+  for (auto& material : scene.materials) {
+    const MaterialSpectra& spectra = material.spectra;
+    each(material.reflectance, spectra.reflectance.get());
+    each(material.transmittance, spectra.transmittance.get());
+    each(material.specular_reflectance, spectra.specular_reflectance.get());
+    each(material.diffuse_transmittance, spectra.diffuse_transmittance.get());
+    if (material.stated_pane) each(material.stated_pane->matt_reflectance, spectra.reflectance.get());
+    if (material.stated_mirror) each(material.stated_mirror->matt_reflectance, spectra.reflectance.get());
+    if (!material.texture) continue;
+    for (auto& values : material.texture->of_primaries) each(values, nullptr);
+  }
+}
+
+// The same for all light sources.
+void visit_lights(auto& scene, const auto& visit) {
+  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
+    if (values.size() > 0) visit(values, spectrum);
+  };
+  for (auto& material : scene.materials) each(material.exitance, material.spectra.light.get());
+  for (auto& luminaire : scene.luminaires) each(strength_of(luminaire), luminaire.spectrum.get());
+  if (scene.sun) each(scene.sun->normal_irradiance, scene.sun->spectrum.get());
+  if (!scene.sky) return;
+  for (auto* values : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
+    each(*values, scene.sky->spectrum.get());
+}
+
+// The same with the exitance of surfaces that emit less as panes.
+void visit_stated_lights(Scene& scene, const auto& visit) {
+  visit_lights(scene, visit);
+  for (Material& material : scene.materials) {
+    if (material.stated_pane && material.stated_pane->matt_exitance.size() > 0)
+      visit(material.stated_pane->matt_exitance, material.spectra.light.get());
+  }
+}
 
 std::string name_of_band(double from, double to) {
   std::ostringstream text;
@@ -26,15 +67,17 @@ std::string name_of_band(double from, double to) {
 
 bool is_even(const Spectrum& spectrum) { return (spectrum == spectrum[0]).all(); }
 
+Cells sum_of(const std::vector<Cells>& lights) {
+  return std::accumulate(lights.begin(), lights.end(), Cells(Cells::Zero()));
+}
+
 // How light is spread inside of bands: as that of all lights together, each as bright as any other.
 Cells mean_light(const Scene& scene) {
-  Cells sum = Cells::Zero();
-  for (const Cells& light : spread_of_lights(scene)) sum += light;
+  const Cells sum = sum_of(spread_of_lights(scene));
   return (sum > 0).any() ? sum : in_cells(*illuminant_d65_spectrum(), Beyond::zero);
 }
 
-// Where the bands are those of all visible light, scaled to the luminance that it had as a colour: else what lies
-// beyond them is left out.
+// Bands of all visible light are scaled to the luminance of the color; others leave out the light beyond them.
 Spectrum in_bands_of(const WavelengthBands& to, const Bands& bands, const Spectrum& rgb,
                      const SampledSpectrum* spectrum) {
   const Spectrum values = to.sum_of(light_in_cells(rgb, spectrum));
@@ -48,8 +91,7 @@ Spectrum share_in_bands(const WavelengthBands& to, Eigen::Index number, const Sp
   return to.mean_of(share_in_cells(rgb, spectrum)).max(0.0).min(1.0);
 }
 
-// What is scattered and what goes elsewhere are 1 at most. In a band they may be more where in linear RGB they were
-// not.
+// All shares of light together are 1 at most. In a band they may be more where in linear RGB they were not.
 Scene with_kept_sums(Scene scene) {
   for (Material& material : scene.materials) {
     const Spectrum stated = material.reflectance;
@@ -57,9 +99,8 @@ Scene with_kept_sums(Scene scene) {
          {&material.transmittance, &material.specular_reflectance, &material.diffuse_transmittance}) {
       if (other->size() > 0) material.reflectance = material.reflectance.min((1 - *other).max(0.0));
     }
-    constexpr double rounding = 1e-9;
     Eigen::Index band = 0;
-    if (stated.size() == 0 || (stated - material.reflectance).maxCoeff(&band) <= rounding) continue;
+    if (stated.size() == 0 || (stated - material.reflectance).maxCoeff(&band) <= tolerance_of_shapes) continue;
     scene.diagnostics.push_back(
         {DiagnosticCode::lowered_reflectance,
          "material '" + material.name + "': what it reflects and lets through is more than 1, as in " +
@@ -69,7 +110,7 @@ Scene with_kept_sums(Scene scene) {
   return scene;
 }
 
-// What lights what lies below the horizon, in the bands that sun and sky have.
+// The light on the ground below the horizon, in the bands of sun and sky.
 Spectrum light_on_ground(const Scene& scene, Eigen::Index bands) {
   Spectrum lit = Spectrum::Zero(bands);
   if (scene.sky->horizontal_irradiance.size() > 0) lit += scene.sky->horizontal_irradiance;
@@ -78,7 +119,7 @@ Spectrum light_on_ground(const Scene& scene, Eigen::Index bands) {
   return lit;
 }
 
-// What lies below the horizon reflects sun and sky: of their colour, and in the bands the share of them that it is in
+// The ground below the horizon reflects sun and sky: with their color, and in the bands the same share of them as in
 // linear RGB. `lit` is their luminance in linear RGB.
 Spectrum ground_in_bands(const Scene& scene, Eigen::Index bands, const Spectrum& rgb, double lit) {
   const Spectrum light = light_on_ground(scene, bands);
@@ -91,6 +132,180 @@ Scene without_spectra(Scene scene) {
   if (scene.sun) scene.sun->spectrum.reset();
   if (scene.sky) scene.sky->spectrum.reset();
   return scene;
+}
+
+using Range = std::pair<Eigen::Index, Eigen::Index>;  // the first band, and the one after the last
+
+struct AllSpectra {
+  std::vector<Spectrum> shares;
+  std::vector<Spectrum> lights;
+};
+
+AllSpectra all_spectra(const Scene& scene) {
+  AllSpectra all;
+  for_all_spectra(
+      scene, [&](const Spectrum& values, const SampledSpectrum*) { all.shares.push_back(values); },
+      [&](const Spectrum& values, const SampledSpectrum*) {
+        if ((values > 0).any()) all.lights.push_back(values);
+      });
+  return all;
+}
+
+bool is_dark(const std::vector<Spectrum>& lights, Eigen::Index band) {
+  return std::all_of(lights.begin(), lights.end(), [&](const Spectrum& light) { return light[band] == 0; });
+}
+
+bool are_alike(const AllSpectra& all, Eigen::Index a, Eigen::Index b) {
+  if (all.lights.empty() || is_dark(all.lights, a) || is_dark(all.lights, b)) return true;
+  const bool same = std::all_of(all.shares.begin(), all.shares.end(), [&](const Spectrum& share) {
+    return std::abs(share[a] - share[b]) <= tolerance_of_arithmetic;
+  });
+  if (!same) return false;
+  // e_b / e_a is that of the first light that has either, for all.
+  const auto is_lit = [&](const Spectrum& light) { return light[a] > 0 || light[b] > 0; };
+  const Spectrum& first = *std::find_if(all.lights.begin(), all.lights.end(), is_lit);
+  return std::all_of(all.lights.begin(), all.lights.end(), [&](const Spectrum& light) {
+    const double here = first[a] * light[b], there = first[b] * light[a];
+    return std::abs(here - there) <= tolerance_of_arithmetic * std::max(here, there);
+  });
+}
+
+// A band without light is none: its neighbors go with the band that gives the values.
+Eigen::Index lit_band(const std::vector<Spectrum>& lights, const Range& range) {
+  for (Eigen::Index band = range.first; band < range.second; ++band) {
+    if (!is_dark(lights, band)) return band;
+  }
+  return range.first;
+}
+
+std::vector<Range> alike_ranges(const AllSpectra& all, Eigen::Index bands) {
+  std::vector<Range> ranges;
+  for (Eigen::Index band = 0; band < bands; ++band) {
+    if (!ranges.empty() && are_alike(all, lit_band(all.lights, ranges.back()), band)) {
+      ++ranges.back().second;
+    } else {
+      ranges.push_back({band, band + 1});
+    }
+  }
+  return ranges;
+}
+
+// One watt in it is spread over its parts as the lights are.
+Band joined(const Bands& bands, const Range& range, const std::vector<Spectrum>& lights) {
+  const Band& first = bands[static_cast<std::size_t>(range.first)];
+  const Band& last = bands[static_cast<std::size_t>(range.second - 1)];
+  if (range.second - range.first == 1) return first;
+  Spectrum weights = Spectrum::Ones(range.second - range.first);
+  const Eigen::Index lit = lit_band(lights, range);
+  const auto light = std::find_if(lights.begin(), lights.end(), [lit](const Spectrum& l) { return l[lit] > 0; });
+  if (light != lights.end()) weights = light->segment(range.first, weights.size());
+  weights /= weights.sum();
+  Band all{first.name.substr(0, first.name.find('-')) + last.name.substr(last.name.find('-')),
+           0,
+           {},
+           {first.edges_nm[0], last.edges_nm[1]}};
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    const Band& part = bands[static_cast<std::size_t>(range.first + k)];
+    all.luminous_weight += weights[k] * part.luminous_weight;
+    for (std::size_t c = 0; c < 3; ++c) all.rgb[c] += weights[k] * part.rgb[c];
+  }
+  return all;
+}
+
+constexpr std::array<Eigen::Index, 16> series = {4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 64, 80, 100, 133, 200};
+
+// The eye sees little beyond 400 and 720 nm: the bands at either end are wider.
+std::vector<double> edges_of(Eigen::Index number) {
+  std::vector<double> edges = equal_edges(number, 400, 720);
+  edges.front() = shortest_wavelength;
+  edges.back() = longest_wavelength;
+  return edges;
+}
+
+struct Colours {
+  std::vector<Cells> lights;
+  std::vector<Cells> shares;  // reflectances and transmittances
+};
+
+Colours colours_of(const Scene& scene) {
+  Colours colours{spread_of_lights(scene), {}};
+  if (colours.lights.empty()) colours.lights.push_back(in_cells(*illuminant_d65_spectrum(), Beyond::zero));
+  for_all_spectra(
+      scene,
+      [&](const Spectrum& rgb, const SampledSpectrum* spectrum) {
+        const Cells share = share_in_cells(rgb, spectrum);
+        // A gray one has no color of its own.
+        if (share.maxCoeff() > share.minCoeff()) colours.shares.push_back(share);
+      },
+      [](const Spectrum&, const SampledSpectrum*) {});
+  return colours;
+}
+
+// One light, exact and in bands.
+class LightInBands {
+ public:
+  LightInBands(const Cells& light, const WavelengthBands& to, const Bands& bands)
+      : light_(light), bands_(bands), in_bands_(to.sum_of(light)), white_(xyz_of_cells(light)) {
+    in_bands_ *= white_.y() / luminance(in_bands_, bands);
+  }
+
+  // The color error of the share that is left of it.
+  double error_of(const Cells& share, const Spectrum& in_bands) const {
+    return colour_difference(lab_of(xyz_of_cells(light_ * share), white_),
+                             lab_of(xyz_of(in_bands_ * in_bands, bands_), white_));
+  }
+
+ private:
+  const Cells& light_;
+  const Bands& bands_;
+  Spectrum in_bands_;
+  Eigen::Vector3d white_;
+};
+
+// The shares by the error of the color reflected once, the largest first.
+std::vector<std::pair<double, std::size_t>> by_error(const LightInBands& light, const std::vector<Cells>& shares,
+                                                     const std::vector<Spectrum>& in_bands) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < shares.size(); ++k) order.emplace_back(light.error_of(shares[k], in_bands[k]), k);
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+    return a.first > b.first || (a.first == b.first && a.second < b.second);
+  });
+  return order;
+}
+
+double worst_error(const LightInBands& light, const std::vector<Cells>& shares, const std::vector<Spectrum>& in_bands,
+                   Eigen::Index bands) {
+  double worst = light.error_of(Cells::Ones(), Spectrum::Ones(bands));
+  const std::vector<std::pair<double, std::size_t>> order = by_error(light, shares, in_bands);
+  if (!order.empty()) worst = std::max(worst, order[0].first);
+  // 40 materials stand for all where light is reflected twice, 12 where it is reflected three times.
+  for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), 40); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const std::size_t a = order[i].second, b = order[j].second;
+      const Cells twice = shares[a] * shares[b];
+      const Spectrum twice_in_bands = in_bands[a] * in_bands[b];
+      worst = std::max(worst, light.error_of(twice, twice_in_bands));
+      for (std::size_t k = 0; k <= j && i < 12; ++k) {
+        const std::size_t c = order[k].second;
+        worst = std::max(worst, light.error_of(twice * shares[c], twice_in_bands * in_bands[c]));
+      }
+    }
+  }
+  return worst;
+}
+
+double error_with(const Colours& colours, const std::vector<double>& edges_nm) {
+  const WavelengthBands to(edges_nm, sum_of(colours.lights));
+  const Bands bands = to.bands();
+  std::vector<Spectrum> in_bands;
+  for (const Cells& share : colours.shares) in_bands.push_back(to.mean_of(share));
+  double worst = 0;
+  // The light of further lamps is between these 12, or as rare.
+  for (std::size_t k = 0; k < std::min<std::size_t>(colours.lights.size(), 12); ++k) {
+    const LightInBands light(colours.lights[k], to, bands);
+    worst = std::max(worst, worst_error(light, colours.shares, in_bands, static_cast<Eigen::Index>(bands.size())));
+  }
+  return worst;
 }
 
 }  // namespace
@@ -133,11 +348,10 @@ bool is_number_of_bands(double number) {
   return number >= 1 && number <= static_cast<double>(number_of_cells) && number == std::floor(number);
 }
 
-std::vector<double> equal_edges(Eigen::Index number) {
+std::vector<double> equal_edges(Eigen::Index number, double from, double to) {
   std::vector<double> edges;
   for (Eigen::Index k = 0; k <= number; ++k)
-    edges.push_back(shortest_wavelength +
-                    (longest_wavelength - shortest_wavelength) * static_cast<double>(k) / static_cast<double>(number));
+    edges.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(number));
   return edges;
 }
 
@@ -162,13 +376,8 @@ Cells share_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum) {
 }
 
 void for_all_spectra(const Scene& scene, const OfQuantity& of_share, const OfQuantity& of_light) {
-  // Nothing is changed of the copy.
-  Scene copy = without_geometry(scene);
-  const auto told = [](const OfQuantity& of) {
-    return [&of](Spectrum& values, const SampledSpectrum* spectrum) { of(values, spectrum); };
-  };
-  visit_shares(copy, told(of_share));
-  visit_lights(copy, told(of_light));
+  visit_shares(scene, of_share);
+  visit_lights(scene, of_light);
 }
 
 std::vector<Cells> spread_of_lights(const Scene& scene) {
@@ -182,7 +391,7 @@ std::vector<Cells> spread_of_lights(const Scene& scene) {
         light /= luminance;
         const double size = light.maxCoeff();
         const bool is_known = std::any_of(all.begin(), all.end(), [&](const Cells& other) {
-          return ((other - light).abs() <= alike_within * size).all();
+          return ((other - light).abs() <= tolerance_of_arithmetic * size).all();
         });
         if (!is_known) all.push_back(light);
       });
@@ -210,8 +419,7 @@ Scene in_wavelength_bands(Scene scene, const std::vector<double>& edges_nm) {
   const auto take_to_bands = [&](Spectrum& values, const SampledSpectrum* spectrum) {
     values = in_bands_of(to, bands, values, spectrum);
   };
-  visit_lights(scene, take_to_bands);
-  visit_matt_lights(scene, take_to_bands);
+  visit_stated_lights(scene, take_to_bands);
   if (ground) scene.sky->ground_radiance = ground_in_bands(scene, number, *ground, lit);
   scene.bands = bands;
   return without_spectra(with_kept_sums(std::move(scene)));
@@ -220,7 +428,7 @@ Scene in_wavelength_bands(Scene scene, const std::vector<double>& edges_nm) {
 Spectrum light_in_bands(const Bands& bands, const Spectrum& rgb, const SampledSpectrum* spectrum) {
   std::vector<double> edges_nm = {bands.front().edges_nm[0]};
   for (const Band& band : bands) edges_nm.push_back(band.edges_nm[1]);
-  // What light there is in a band does not depend on how it is spread inside.
+  // The light in a band does not depend on its spread inside.
   return in_bands_of(WavelengthBands(edges_nm, Cells::Ones()), bands, rgb, spectrum);
 }
 
@@ -246,9 +454,49 @@ Scene in_rgb(Scene scene) {
   const auto take_to_rgb = [](Spectrum& values, const SampledSpectrum* spectrum) {
     if (spectrum) values = luminance(values) / luminous_efficacy * rgb_of_light(*spectrum);
   };
-  visit_lights(scene, take_to_rgb);
-  visit_matt_lights(scene, take_to_rgb);
+  visit_stated_lights(scene, take_to_rgb);
   return without_spectra(std::move(scene));
+}
+
+Scene with_alike_bands_joined(Scene scene) {
+  const AllSpectra all = all_spectra(scene);
+  const Bands bands = bands_of(scene);
+  const std::vector<Range> ranges = alike_ranges(all, static_cast<Eigen::Index>(bands.size()));
+  if (ranges.size() == bands.size()) return scene;
+  const auto number = static_cast<Eigen::Index>(ranges.size());
+  visit_shares(scene, [&](Spectrum& values, const SampledSpectrum*) {
+    Spectrum kept(number);
+    for (Eigen::Index k = 0; k < number; ++k)
+      kept[k] = values[lit_band(all.lights, ranges[static_cast<std::size_t>(k)])];
+    values = kept;
+  });
+  const auto join_light = [&](Spectrum& values, const SampledSpectrum*) {
+    Spectrum sums(number);
+    for (Eigen::Index k = 0; k < number; ++k) {
+      const Range& range = ranges[static_cast<std::size_t>(k)];
+      sums[k] = values.segment(range.first, range.second - range.first).sum();
+    }
+    values = sums;
+  };
+  visit_stated_lights(scene, join_light);
+  scene.bands.clear();
+  for (const Range& range : ranges) scene.bands.push_back(joined(bands, range, all.lights));
+  return scene;
+}
+
+double colour_error(const Scene& scene, const std::vector<double>& edges_nm) {
+  return error_with(colours_of(scene), edges_nm);
+}
+
+BandsWithError bands_within(const Scene& scene, double color_error) {
+  const Colours colours = colours_of(scene);
+  BandsWithError found;
+  for (const Eigen::Index number : series) {
+    found.edges_nm = edges_of(number);
+    found.color_error = error_with(colours, found.edges_nm);
+    if (found.color_error <= color_error) break;
+  }
+  return found;
 }
 
 }  // namespace patchlight

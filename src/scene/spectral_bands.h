@@ -19,10 +19,10 @@ class WavelengthBands {
   /// The mean over each band, by the light there.
   Spectrum mean_of(const Cells& share) const { return (share_weights_ * share.matrix()).transpose().array(); }
 
-  /// What light there is in each band, where `light` is per nm.
+  /// The light in each band, where `light` is per nm.
   Spectrum sum_of(const Cells& light) const { return (overlap_ * light.matrix()).transpose().array(); }
 
-  /// What they stand for.
+  /// Their names, weights and colors.
   Bands bands() const;
 
   /// True when they reach from 380 to 780 nm.
@@ -37,23 +37,23 @@ class WavelengthBands {
 /// True for whole numbers from 1 to 400, a band for each nm.
 bool is_number_of_bands(double number);
 
-/// `number` bands of one width from 380 to 780 nm.
-std::vector<double> equal_edges(Eigen::Index number);
+/// `number` bands of one width, nm.
+std::vector<double> equal_edges(Eigen::Index number, double from = shortest_wavelength, double to = longest_wavelength);
 
-/// A light of a scene in linear RGB, per nm, such that its luminance is that of its colour: spread as the spectrum, or
-/// where there is none, D65 times the smooth reflectance of that colour.
+/// A light of a scene in linear RGB, per nm, such that its luminance is that of its color: spread as the spectrum, or
+/// where there is none, D65 times the smooth reflectance of that color.
 Cells light_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum);
 
-/// A reflectance or transmittance in linear RGB, or as its spectrum is where there is one. One of grey is even.
+/// A reflectance or transmittance in linear RGB, or as its spectrum is where there is one. One of gray is even.
 Cells share_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum);
 
 /// How all lights of a scene in linear RGB are spread, a luminance of 1 each; of several alike one.
 std::vector<Cells> spread_of_lights(const Scene& scene);
 
-/// What is told of a quantity of a scene that has a spectrum for each band: its values, and its spectrum or null.
+/// A visitor of a quantity with a value for each band: its values, and its spectrum or null.
 using OfQuantity = std::function<void(const Spectrum& values, const SampledSpectrum* spectrum)>;
 
-/// Calls one for all reflectances and transmittances, the other for all that gives light. Empty spectra are left out.
+/// Calls one for all reflectances and transmittances, the other for all light sources. Empty spectra are left out.
 void for_all_spectra(const Scene& scene, const OfQuantity& of_share, const OfQuantity& of_light);
 
 /// True when something has a spectrum by wavelength.
@@ -68,7 +68,25 @@ Spectrum light_in_bands(const Bands& bands, const Spectrum& rgb, const SampledSp
 /// The scene, which is in bands of wavelengths, with its sun and its sky, which are in linear RGB, in these as well.
 Scene with_daylight_in_bands(Scene scene);
 
-/// The scene, which is in linear RGB, with the colours of its spectra, and without these.
+/// The scene, which is in linear RGB, with the colors of its spectra, and without these.
 Scene in_rgb(Scene scene);
+
+/// Bands of wavelengths, and how far colors are off by them.
+struct BandsWithError {
+  std::vector<double> edges_nm;
+  double color_error = 0;  ///< CIE dE00, see colour_error()
+};
+
+/// How far bands with these edges put colors off at most, CIE dE00: of light of each lamp of the scene, which is in
+/// linear RGB, as it is, and reflected by one, two or three surfaces, seen beside a white under that lamp. Of many
+/// materials those that are most off by themselves stand for all where light is reflected more than once.
+double colour_error(const Scene& scene, const std::vector<double>& edges_nm);
+
+/// The fewest bands, of a series from 4 to 200, that keep colour_error() within one that is above 0; else the most.
+BandsWithError bands_within(const Scene& scene, double color_error);
+
+/// The scene with neighboring bands as one where all reflectances and transmittances are the same in both, and all
+/// lights have the same share of their light in each, or none has any: nothing that is linear in light changes.
+Scene with_alike_bands_joined(Scene scene);
 
 }  // namespace patchlight

@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "light/photometry.h"
-#include "scene/transmittance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +10,47 @@
 #include <utility>
 
 namespace patchlight {
-namespace {
 
-constexpr std::uint32_t not_specular = ~0U;
+std::vector<Pane> panes_of(const Material& material) {
+  std::vector<Pane> panes;
+  for (const double share : material.transmittance) panes.push_back(pane_of(material.index, share));
+  return panes;
+}
 
-}  // namespace
+Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = transmittance(panes[band], cosine);
+  return share;
+}
+
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = specular_reflectance(panes[band], cosine);
+  return share;
+}
+
+double cosine_between(const Vector& normal, const Vector& direction) {
+  return std::min(1.0, std::abs(normal.dot(direction)));
+}
+
+double held_of(double transmittance) { return std::max(1e-6, 1 - transmittance); }
+
+double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.5) / cosine_steps; }
+
+// That up to a cosine is its square.
+double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
+
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on) {
+  Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t k = 0; k < cosine_steps; ++k) {
+    Spectrum onward = transmittance(panes, cosine_of_step(k));
+    if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
+    held += irradiance_of_step(k) * onward.unaryExpr(&held_of);
+  }
+  return held;
+}
 
 SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections)
     : reflections_(reflections) {
@@ -96,7 +131,7 @@ double SpecularFace::kind(Side side) const {
   return reflections_ == Reflections::kept ? -1 : 1 + index_;
 }
 
-// What a mirror keeps is the same at all angles.
+// A mirror keeps the same share at all angles.
 double SpecularFace::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
 
 // Within a step the density is taken as even.

@@ -11,10 +11,39 @@
 
 namespace patchlight {
 
-/// What becomes of light that a face reflects as a mirror does: the face keeps it, or it goes on.
+/// The panes that a clear material is, one per band; none of an opaque one.
+std::vector<Pane> panes_of(const Material& material);
+
+/// The share that they transmit at an angle of incidence with this cosine, per band.
+Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
+
+/// The share that they reflect as mirrors do.
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
+
+/// Of the angle between a unit normal and a unit direction, whichever way both look.
+double cosine_between(const Vector& normal, const Vector& direction);
+
+/// The share of light that is kept, to be reflected or absorbed: 1 less the transmittance, and 1e-6 at least.
+double held_of(double transmittance);
+
+/// Light from all directions alike, by the cosine of its angle to a normal: so many parts of the range of the cosine,
+/// the midpoints of which stand for them, give the share held by ordinary glass within 2e-6.
+inline constexpr std::size_t cosine_steps = 1024;
+
+/// The middle of a part.
+double cosine_of_step(std::size_t step);
+
+/// The share of the irradiance that comes within a part; 1 in all.
+double irradiance_of_step(std::size_t step);
+
+/// The share of light from all directions alike, weighted as irradiance is, that panes keep, per band; without their
+/// reflections where these go on.
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on = false);
+
+/// Whether a face keeps the light that it reflects as a mirror does, or that light goes on.
 enum class Reflections : bool { kept, followed };
 
-/// What becomes of light that meets a specular face at an angle, as shares of it.
+/// The shares of light that meets a specular face at an angle.
 struct SpecularShares {
   double transmitted = 0;
   double mirrored = 0;
@@ -23,7 +52,7 @@ struct SpecularShares {
 };
 
 /// A clear polygon or a mirror as light between patches meets it: one number for all bands, weighted as luminance is.
-/// What a clear one lets through and reflects is the same both ways, the mean of its two sides; each side of a mirror
+/// A clear one transmits and reflects the same both ways, the mean of its two sides; each side of a mirror
 /// has a reflectance of its own, 0 if it is none. Cosines are those of the angle to its normal, in [0, 1].
 class SpecularFace {
  public:
@@ -46,19 +75,19 @@ class SpecularFace {
   SpecularShares shares(Side side, double cosine) const;
 
   /// With which probability a ray that follows light is mirrored rather than let through: the reflectance of a pane of
-  /// the index of refraction that absorbs nothing, so that it is of the geometry and not of the colour; 1 of a side
-  /// that is a mirror, 0 where clear ones keep what they reflect.
+  /// the index of refraction that absorbs nothing, so that it is of the geometry and not of the color; 1 of a side
+  /// that is a mirror, 0 where clear ones keep their reflections.
   double mirrored_rays(Side side, double cosine) const;
 
   /// Whether rays go on from a side.
   bool is_specular(Side side) const { return is_clear() || is_mirror_[static_cast<std::size_t>(side)] != 0; }
   bool is_clear() const { return !parts_.empty(); }
 
-  /// A number for what mirrored_rays() rests on: 0 of a side from which no ray goes on, 1 of a mirror, the index of
-  /// refraction and 1 of a clear one, less than 0 where that keeps what it reflects.
+  /// A number for the properties behind mirrored_rays(): 0 of a side from which no ray goes on, 1 of a mirror, the
+  /// index of refraction and 1 of a clear one, less than 0 where that keeps its reflections.
   double kind(Side side) const;
 
-  /// The cosine that belongs to a number of [0, 1) if directions are distributed as what is kept of light from all
+  /// The cosine that belongs to a number of [0, 1) if directions are distributed as the light kept of that from all
   /// directions alike.
   double held_cosine(double u) const;
 
@@ -76,8 +105,8 @@ class SpecularFace {
   std::array<std::uint8_t, 2> is_mirror_{};  // by sides, in some band
   std::vector<Part> parts_;                  // each pane once; none of a mirror
   std::array<double, 2> mirrored_{};         // by the sides of a mirror
-  std::vector<double> held_upto_;     // of panes: the share of what is kept that comes at cosines up to k / steps
-  std::array<double, 2> held_{1, 1};  // of front and back
+  std::vector<double> held_upto_;            // of panes: the part of the kept share at cosines up to k / steps
+  std::array<double, 2> held_{1, 1};         // of front and back
 };
 
 /// The clear polygons and mirrors of a scene; all others scatter or absorb all light that they meet. Directions are
@@ -90,20 +119,18 @@ class SpecularFaces {
 
   bool empty() const { return faces_.empty(); }
 
-  /// SpecularFace::transmittance() of a polygon; 0 of all others.
+  /// The functions of SpecularFace for a polygon. All others transmit and reflect nothing: 0, and hold all light: 1.
   double transmittance(PolygonIndex polygon, const Vector& direction) const;
-
-  /// SpecularFace::reflectance() of the side that is met; 0 of all others.
   double reflectance(PolygonIndex polygon, const Vector& direction) const;
+  SpecularShares shares(PolygonIndex polygon, Side side, double cosine) const;
+  double held(PolygonIndex polygon, Side side) const;
+  double relative_held(PolygonIndex polygon, const Vector& direction) const;
 
   /// The face of a polygon that is specular; null of all others.
   const SpecularFace* at(PolygonIndex polygon) const;
 
   /// The unit normal of a polygon's front; there must be specular ones.
   const Vector& normal(PolygonIndex polygon) const { return normals_[polygon]; }
-
-  /// SpecularFace::shares() of a polygon; all is held by others.
-  SpecularShares shares(PolygonIndex polygon, Side side, double cosine) const;
 
   /// SpecularFace::kind() of front and back of each of so many polygons.
   std::vector<std::array<double, 2>> kinds(std::size_t polygons) const;
@@ -112,18 +139,13 @@ class SpecularFaces {
   /// specular.
   Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
 
-  /// SpecularFace::held() of a side; 1 of all others.
-  double held(PolygonIndex polygon, Side side) const;
-
-  /// SpecularFace::relative_held() of a polygon; 1 of all others.
-  double relative_held(PolygonIndex polygon, const Vector& direction) const;
-
   /// The direction, in a frame whose third axis is the polygon's normal, that belongs to (u, v) of the unit square if
-  /// directions are distributed as what the polygon keeps of light from all directions alike: of all but clear ones
+  /// directions are distributed as the polygon keeps light from all directions alike: of all but clear ones
   /// square_to_cosine_hemisphere().
   Vector held_direction(PolygonIndex polygon, double u, double v) const;
 
  private:
+  static constexpr std::uint32_t not_specular = ~0U;
   std::vector<SpecularFace> faces_;        // each pair of materials once
   std::vector<std::uint32_t> of_polygon_;  // none where no polygon is specular, as normals
   std::vector<Vector> normals_;            // of the fronts

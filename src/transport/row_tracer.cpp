@@ -3,7 +3,7 @@
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

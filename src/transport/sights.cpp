@@ -1,7 +1,7 @@
 #include "transport/sights.h"
 
 #include "base/sampling.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "base/sampling.h"
 #include "light/texture.h"
 #include "scene/coverings.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 #include "verify/path_tracer.h"
 #include "visibility/occluder.h"
 

@@ -1,6 +1,6 @@
 #include "visibility/flat_polygon.h"
 
-#include "scene/half_spaces.h"
+#include "scene/face_tree.h"
 
 #include <algorithm>
 #include <cmath>

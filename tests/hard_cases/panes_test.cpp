@@ -4,7 +4,6 @@
 #include "mesh/mesher.h"
 #include "render/render.h"
 #include "scene/specular_faces.h"
-#include "scene/transmittance.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
 #include "visibility/occluder.h"

@@ -4,7 +4,6 @@
 
 #include "light/photometry.h"
 #include "light/spectra.h"
-#include "scene/joined_bands.h"
 #include "scene/spectral_bands.h"
 #include "support/effect_scenes.h"
 

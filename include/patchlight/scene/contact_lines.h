@@ -12,17 +12,17 @@ namespace patchlight {
 /// A line on a polygon along which another face touches it, crosses it, or ends close before it: there the light on the
 /// polygon changes at once, or nearly so.
 struct ContactLine {
-  Point from;      ///< in the polygon's plane, metres
+  Point from;      ///< in the polygon's plane, meters
   Point to;        ///< likewise
-  double gap = 0;  ///< how far the other face is from the line at most, metres; 0 where it touches or crosses
+  double gap = 0;  ///< how far the other face is from the line at most, meters; 0 where it touches or crosses
 };
 
 /// The lines of contact of a scene, and how fine these have to be.
 struct ContactLines {
   std::vector<std::vector<ContactLine>> on;  ///< at the index of each polygon; empty: there are none
   bool everywhere = false;                   ///< faces cross so often that none was looked for
-  double size = 0;                           ///< the root of the area of all faces, metres
-  /// Metres. Patches with longer edges follow the lines as those of this length do.
+  double size = 0;                           ///< the root of the area of all faces, meters
+  /// Meters. Patches with longer edges follow the lines as those of this length do.
   double detail = std::numeric_limits<double>::infinity();
   double of_edge = 1;  ///< patches follow the lines as those with this part of their edges do: a half where they will
                        ///< be cut in four

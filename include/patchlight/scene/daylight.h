@@ -19,8 +19,8 @@ struct Sun {
 /// How the radiance of a sky varies over its hemisphere.
 enum class SkyKind : std::uint8_t { uniform, cie_overcast, cie_clear, perez };
 
-/// The sky, without the sun, and what is below the horizon. Spectra have the scene's number of bands. The radiance of
-/// the sky is told by one of two spectra.
+/// The sky, without the sun, and the ground below the horizon. Spectra have the scene's number of bands. The radiance
+/// of the sky is told by one of two spectra.
 struct Sky {
   SkyKind kind = SkyKind::uniform;
   Spectrum horizontal_irradiance{};        ///< of an unobstructed horizontal plane by the sky alone, W/m^2; or empty:
@@ -32,7 +32,7 @@ struct Sky {
   std::shared_ptr<const SampledSpectrum> spectrum{};  ///< as Luminaire::spectrum
 };
 
-/// What weather stations measure, over the whole solar spectrum.
+/// The measurements of weather stations, over the whole solar spectrum.
 struct SolarIrradiance {
   double direct_normal = 0;       ///< W/m^2
   double diffuse_horizontal = 0;  ///< W/m^2

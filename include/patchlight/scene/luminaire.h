@@ -29,7 +29,7 @@ struct WebLight {
   Spectrum watts_per_lumen;                   ///< per band; 1/179 for white light
 };
 
-/// A sphere that emits evenly. Its centre is the luminaire's position. It casts no shadows.
+/// A sphere that emits evenly. Its center is the luminaire's position. It casts no shadows.
 struct SphericalLamp {
   double radius = 0;  ///< m, above 0
   Spectrum exitance;  ///< W/m^2
@@ -39,12 +39,12 @@ struct SphericalLamp {
 struct Luminaire {
   std::string name;
   std::string place;                    ///< where it is stated, for messages: "office.toml:31"
-  Point position = Point::Zero();       ///< of the photometric centre, m
+  Point position = Point::Zero();       ///< of the photometric center, m
   Vector aim = -Vector::UnitZ();        ///< unit; the nadir of its photometry, the axis of a spot
   Vector zero_plane = Vector::UnitX();  ///< unit, at right angles to the aim; towards the horizontal angle 0
   std::variant<PointLight, SpotLight, WebLight, SphericalLamp> light;
   std::shared_ptr<const SampledSpectrum> spectrum{};  ///< how its light is spread, until the scene has its bands; any
-                                                      ///< multiple of it; null: as its colour
+                                                      ///< multiple of it; null: as its color
 };
 
 /// The intensity of a spot, as a share of that on its axis, at an angle with this cosine:

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ enum class Side : std::uint8_t { front, back };
 /// "front" or "back".
 const char* name_of(Side side);
 
-/// Where points lie in the picture of a material: (u, v) = linear * x + offset, x in metres.
+/// Where points lie in the picture of a material: (u, v) = linear * x + offset, x in meters.
 struct TextureMap {
   Eigen::Matrix<double, 2, 3> linear;  ///< 1/m
   Eigen::Vector2d offset;
@@ -55,7 +56,7 @@ struct Polygon {
 struct NamedRoom {
   std::string name;                       ///< "A102"
   std::string storey = {};                ///< "Level1"; empty if unknown
-  std::vector<std::vector<Point>> faces;  ///< corners, metres
+  std::vector<std::vector<Point>> faces;  ///< corners, meters
 };
 
 /// How a camera maps directions to its picture.
@@ -70,6 +71,14 @@ enum class Projection : std::uint8_t {
 /// "perspective", "orthographic", "angular", "hemispherical" or "panorama", as in scene files.
 const char* name_of(Projection projection);
 
+/// The projection of that name; nothing for other names.
+std::optional<Projection> projection_named(const std::string& name);
+
+/// The vertical field of view of a camera of which none is stated, and the largest one, degrees. A perspective stays
+/// below it.
+double usual_field_of_view(Projection projection);
+double largest_field_of_view(Projection projection);
+
 /// Where a picture is taken from.
 struct Camera {
   Point eye;
@@ -77,13 +86,16 @@ struct Camera {
   double vertical_field_of_view = 50;  ///< degrees
   std::string name = {};               ///< in a scene file
   Projection projection = Projection::perspective;
-  double height = 0;  ///< of what an orthographic picture shows, metres
+  double height = 0;  ///< of the part that an orthographic picture shows, meters
 };
+
+/// False when the projection of a camera cannot have its field of view, or its height.
+bool has_extent(const Camera& camera);
 
 /// A material that may be meant as a lamp.
 struct LampHint {
   std::string material;
-  Spectrum radiance;   ///< what it may be meant to emit, W/(m^2 sr)
+  Spectrum radiance;   ///< that it may be meant to emit, W/(m^2 sr)
   std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
@@ -99,19 +111,19 @@ struct UnsimulatedMaterials {
 /// How a scene that has spectra was given its bands, in words.
 struct BandChoice {
   bool spectral = true;  ///< not linear RGB
-  std::string reason;    ///< "1 of 3 materials has a spectrum; 12 bands keep colours within 0.8 dE00"
+  std::string reason;    ///< "1 of 3 materials has a spectrum; 12 bands keep colors within 0.8 dE00"
   std::string saving;    ///< "12 of 81 bands"
 };
 
-/// A model: polygons with materials, in metres. Lamps are polygons whose material has an exitance; besides them there
+/// A model: polygons with materials, in meters. Lamps are polygons whose material has an exitance; besides them there
 /// may be luminaires, sun and sky.
 struct Scene {
-  std::vector<Point> vertices;  ///< metres
+  std::vector<Point> vertices;  ///< meters
   std::vector<Polygon> polygons;
   std::size_t faces = 0;  ///< that the files have; read_scene() may cut and join them
   std::vector<Material> materials;
   std::vector<TextureMap> texture_maps;       ///< of polygons whose materials have pictures
-  Bands bands;                                ///< what the bands of all spectra stand for; empty: bands_of() tells
+  Bands bands;                                ///< the meaning of the bands of all spectra; empty: see bands_of()
   std::vector<std::string> groups;            ///< names of objects and groups
   std::string file;                           ///< the model file's name, for messages
   std::vector<std::string> files;             ///< the files the polygons come from; empty when `file` is the only one
@@ -139,14 +151,21 @@ struct Scene {
 /// How many bands the scene's spectra have. There must be a material.
 Eigen::Index number_of_bands(const Scene& scene);
 
-/// What they stand for: as the scene says, else usual_bands().
+/// The meaning of its bands: Scene::bands, else usual_bands().
 Bands bands_of(const Scene& scene);
 
 /// The diagnostics that cannot make all results wrong.
 Diagnostics remarks_of(const Scene& scene);
 
-/// The corner points of a polygon.
+/// The corner points of a polygon, or of an outline of vertices.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);
+std::vector<Point> corner_points(const Scene& scene, std::span<const std::uint32_t> outline);
+
+/// The area of a polygon, m^2.
+double polygon_area(const Scene& scene, PolygonIndex polygon);
+
+/// The box around a polygon.
+Box polygon_box(const Scene& scene, PolygonIndex polygon);
 
 /// The unit normal of a polygon's front side; zero for a polygon without area.
 Vector front_normal(const Scene& scene, PolygonIndex polygon);
@@ -177,8 +196,9 @@ bool is_opening(const Scene& scene, PolygonIndex polygon);
 /// True when this side of the polygon is a mirror: its specular reflectance is above 0 in some band.
 bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side);
 
-/// True when the polygon is a translucent sheet: what arrives on one side is scattered out of the other as well, as the
-/// material of its front has a diffuse transmittance above 0 in some band. check() has that of its back the same.
+/// True when the polygon is a translucent sheet: light that arrives on one side is scattered out of the other as well,
+/// as the material of its front has a diffuse transmittance above 0 in some band. check() has that of its back the
+/// same.
 bool is_sheet(const Scene& scene, PolygonIndex polygon);
 
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
@@ -195,11 +215,11 @@ std::string group_name(const Scene& scene, std::uint32_t group);
 /// Bounds of all vertices that polygons use.
 Box bounds(const Scene& scene);
 
-/// Checks what mending a model relies on: finite vertices, corners in range, at most 10,000 corners per polygon.
+/// Checks the conditions of repair(): finite vertices, corners in range, at most 10,000 corners per polygon.
 /// \throws InputError naming the file and line.
 void check_vertices(const Scene& scene);
 
-/// Checks what every later step relies on: all that check_vertices() does, at least one polygon, planar polygons
+/// Checks the conditions of every later step: all that check_vertices() does, at least one polygon, planar polygons
 /// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
 /// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not
 /// two of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.

@@ -31,7 +31,7 @@ struct KeptSides {
   std::vector<std::uint8_t> front;  ///< 1 when the polygon's front side is kept
   std::vector<std::uint8_t> back;   ///< 1 when its back side is kept
   bool emit_from_back = false;      ///< lamps emit from their back sides too (Sides::both)
-  Diagnostics notes;                ///< what was decided, for the report
+  Diagnostics notes;                ///< the decisions, for the report
   std::vector<DarkSolid> dark_solids = {};
   std::size_t unreached = 0;    ///< sides that face the inside of one
   std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid, or nothing at all

@@ -6,10 +6,9 @@
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
 #include "input/toml/toml_value.h"
-#include "scene/dark_solids.h"
-#include "scene/sealed_room.h"
+#include "scene/room_body.h"
 #include "scene/sensor_grid.h"
-#include "scene/window_areas.h"
+#include "scene/solids.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,6 @@
 #include "input/toml/toml_sensors.h"
 #include "input/toml/toml_spectrum.h"
 #include "input/toml/toml_value.h"
-#include "scene/projection.h"
 
 #include <cmath>
 #include <string>

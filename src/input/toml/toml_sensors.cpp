@@ -8,9 +8,9 @@
 #include "input/material_settings.h"
 #include "input/tables/read_points.h"
 #include "input/text.h"
-#include "scene/dark_solids.h"
 #include "scene/extent.h"
 #include "scene/room_body.h"
+#include "scene/solids.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,7 +1,7 @@
 // Surfaces that are there in part: alpha of pictures in glTF, map_d in OBJ.
 #include "input/picture_colours.h"
 #include "model_files.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 
 #include <cstring>
 #include <gtest/gtest.h>

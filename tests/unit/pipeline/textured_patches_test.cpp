@@ -3,7 +3,7 @@
 #include "patchlight/simulate.h"
 
 #include "mesh/mesher.h"
-#include "scene/joined_faces.h"
+#include "scene/less_detail.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-#include "scene/holes.h"
-
+#include "scene/coverings.h"
 #include "support/scenes.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
-#include "scene/joined_faces.h"
-
 #include "mesh/mesher.h"
+#include "scene/less_detail.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-#include "scene/sealed_room.h"
-
+#include "scene/room_body.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

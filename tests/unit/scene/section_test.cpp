@@ -1,5 +1,4 @@
-#include "scene/section.h"
-
+#include "scene/face_tree.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-#include "scene/solid_panes.h"
-
+#include "scene/openings.h"
 #include "scene/repair.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"

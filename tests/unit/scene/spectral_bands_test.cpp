@@ -1,8 +1,6 @@
 #include "scene/spectral_bands.h"
 
 #include "light/photometry.h"
-#include "scene/band_choice.h"
-#include "scene/joined_bands.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

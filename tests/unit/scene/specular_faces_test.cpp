@@ -1,6 +1,5 @@
 #include "scene/specular_faces.h"
 
-#include "scene/transmittance.h"
 #include "support/scenes.h"
 
 #include <cmath>

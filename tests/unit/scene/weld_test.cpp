@@ -1,4 +1,4 @@
-#include "scene/weld.h"
+#include "scene/extent.h"
 
 #include <gtest/gtest.h>
 #include <limits>
