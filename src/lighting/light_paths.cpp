@@ -1,6 +1,6 @@
 #include "lighting/light_paths.h"
 
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 
 #include <algorithm>
 #include <array>

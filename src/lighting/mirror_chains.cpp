@@ -2,7 +2,6 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "lighting/mirrored_sources.h"
 #include "scene/specular_faces.h"
 
 #include <algorithm>
