@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "gather/sources.h"
 #include "mesh/interpolate.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Dense>

@@ -6,7 +6,7 @@
 #include "lighting/sampled_sources.h"
 #include "lighting/shifted_points.h"
 #include "mesh/interpolate.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include "lighting/receiver.h"
 #include "lighting/receivers.h"
 #include "lighting/shifted_points.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 
 #include <algorithm>
 #include <array>
