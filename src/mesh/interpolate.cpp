@@ -108,7 +108,7 @@ Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index colum
   Field means = Field::Zero(mesh.size(), columns);
   parallel_for(mesh.size(), [&](std::size_t i) {
     const auto patch = static_cast<PatchIndex>(i);
-    const Row& row = rows[slot_of(mesh.polygon[i], mesh.side[i])];
+    const Row& row = rows[side_slot(mesh.polygon[i], mesh.side[i])];
     double area = 0;
     for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
       const double share = area_vector(common).norm();

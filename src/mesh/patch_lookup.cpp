@@ -277,7 +277,7 @@ PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
 }
 
 const PatchLookup::Grid& PatchLookup::grid_on(PolygonIndex polygon, Side side) const {
-  return grids_[grid_of_[slot_of(polygon, side)]];
+  return grids_[grid_of_[side_slot(polygon, side)]];
 }
 
 std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
@@ -310,8 +310,8 @@ std::vector<PatchIndex> PatchLookup::with_searched(std::vector<PatchIndex> patch
 }
 
 std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> points) const {
-  for (const SidePoint& at : points) __builtin_prefetch(&mesh_.first_patch[slot_of(at.polygon, at.side)]);
-  for (const SidePoint& at : points) __builtin_prefetch(&grid_of_[slot_of(at.polygon, at.side)]);
+  for (const SidePoint& at : points) __builtin_prefetch(&mesh_.first_patch[side_slot(at.polygon, at.side)]);
+  for (const SidePoint& at : points) __builtin_prefetch(&grid_of_[side_slot(at.polygon, at.side)]);
   // 1. Points that need no search in a cell; of the others the cell.
   std::vector<PatchIndex> patches(points.size(), no_patch);
   std::vector<Searched> searched;

@@ -16,7 +16,7 @@ namespace patchlight {
 inline constexpr PatchIndex no_patch = ~PatchIndex{0};
 
 /// Where arrays of both sides of all polygons have this side.
-inline std::size_t slot_of(PolygonIndex polygon, Side side) {
+inline std::size_t side_slot(PolygonIndex polygon, Side side) {
   return 2 * std::size_t{polygon} + static_cast<std::size_t>(side);
 }
 
@@ -44,7 +44,7 @@ struct PatchMesh {
   std::vector<MaterialIndex> material;
   std::vector<PolygonIndex> polygon;    ///< the scene's polygon that the patch lies on
   std::vector<Side> side;               ///< the side of that polygon which is the patch's front
-  std::vector<PatchIndex> first_patch;  ///< per slot_of() a side: its first patch; one more entry at the end
+  std::vector<PatchIndex> first_patch;  ///< per side_slot() a side: its first patch; one more entry at the end
 
   std::vector<PolygonIndex> sheets;  ///< the translucent polygons with both sides, whose patches lie back to back
 
