@@ -8,7 +8,7 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
-#include "solve/solved_bands.h"
+#include "solve/scattering.h"
 #include "transport/ray_transport.h"
 
 #include <Eigen/Core>

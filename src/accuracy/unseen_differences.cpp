@@ -7,8 +7,8 @@
 #include "form_factor/patch_keys.h"
 #include "form_factor/point_polygon.h"
 #include "mesh/interpolate.h"
+#include "mesh/nested_mesh.h"
 #include "mesh/patch_lookup.h"
-#include "mesh/small_patches.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

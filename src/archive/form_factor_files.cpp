@@ -22,6 +22,7 @@
 #include <fstream>
 #include <functional>
 #include <iomanip>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
@@ -44,19 +45,13 @@ const char* name_of(GroupBy by) { return by == GroupBy::material ? "material" : 
 GroupFactors group_factors(const Scene& scene, const FormFactors& form_factors, GroupBy by) {
   const PatchMesh& mesh = form_factors.mesh;
   const Exchange& exchange = form_factors.exchange;
-  constexpr std::uint32_t none = ~std::uint32_t{0};
   // Groups are numbered as they come up among the scene's, those without patches left out.
-  std::vector<std::uint32_t> number;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const std::uint32_t group = group_of(scene, mesh, i, by);
-    if (group >= number.size()) number.resize(group + 1, none);
-    number[group] = 0;
-  }
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) number[group_of(scene, mesh, i, by)] = 0;
   GroupFactors groups;
   groups.by = by;
-  for (std::uint32_t group = 0; group < number.size(); ++group) {
-    if (number[group] == none) continue;
-    number[group] = static_cast<std::uint32_t>(groups.names.size());
+  for (auto& [group, place] : number) {
+    place = static_cast<std::uint32_t>(groups.names.size());
     groups.names.push_back(name_of(scene, group, by));
   }
 
@@ -87,9 +82,6 @@ void write_groups(const std::filesystem::path& file, const GroupFactors& groups)
 }
 
 namespace {
-
-// Keeps the keys in the order in which they are set.
-using Json = nlohmann::ordered_json;
 
 void report(const Observer& observer, PatchIndex row, PatchIndex rows) {
   if (observer && !observer({.stage = Stage::write, .fraction = static_cast<double>(row) / rows})) throw Cancelled();

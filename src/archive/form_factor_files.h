@@ -63,6 +63,9 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
 /// Fails early: \throws OutputError when write_form_factors could not write here.
 void check_form_factors_writable(const std::filesystem::path& folder);
 
+/// Stored entries were rounded to float, 6e-8 each: sums and differences of them are off by less than this.
+inline constexpr double rounding_of_entries = 1e-5;
+
 /// How stored form factors were made.
 struct FormFactorInfo {
   std::string geometry_sha256;  ///< of the patches
@@ -96,7 +99,7 @@ FormFactorInfo read_form_factor_info(const std::filesystem::path& folder);
 /// True for a folder with the files of form factors and no others, which may be replaced.
 bool is_earlier_form_factors(const std::filesystem::path& folder);
 
-/// \throws InputError, which says how to mend it, when the form factors are those of other patches.
+/// \throws InputError, with a way out, when the form factors are those of other patches.
 void require_same_geometry(const std::filesystem::path& folder, const FormFactorInfo& info, const PatchMesh& mesh);
 
 /// Writes exitance.npy and reflectance.npy: those of the patches as the scene has them, a column per band.

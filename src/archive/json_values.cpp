@@ -16,6 +16,46 @@ bool is_utf8(const std::string& text) {
   }
 }
 
+// One member of each.
+template <std::size_t n, class Value>
+Json members_of(const std::array<AuditedPairs, n>& kinds, Value AuditedPairs::*member) {
+  Json values = Json::array();
+  for (const AuditedPairs& audited : kinds) values.push_back(audited.*member);
+  return values;
+}
+
+double sum_of_squares(const nlohmann::json& json) {
+  const auto sum = json.get<double>();
+  if (!(sum >= 0 && std::isfinite(sum))) throw std::out_of_range("a sum of squares is not a number above 0");
+  return sum;
+}
+
+template <std::size_t n>
+std::array<AuditedPairs, n> audited_of(const nlohmann::json& pairs, const nlohmann::json& squares,
+                                       const nlohmann::json& weights) {
+  std::array<AuditedPairs, n> kinds{};
+  for (std::size_t k = 0; k < n; ++k)
+    kinds[k] = {pairs.at(k).get<std::uint64_t>(), sum_of_squares(squares.at(k)), sum_of_squares(weights.at(k))};
+  return kinds;
+}
+
+Json counts_of(const SamplingError::Unanimous& unanimous) {
+  return {{"sampled_again", members_of(unanimous.audited, &AuditedPairs::pairs)},
+          {"squares", members_of(unanimous.audited, &AuditedPairs::squares)},
+          {"weights", members_of(unanimous.audited, &AuditedPairs::weight)},
+          {"missed", unanimous.missed},
+          {"bound", bound_on_miss(unanimous)},
+          {"by_share", unanimous.by_share}};
+}
+
+SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
+  SamplingError::Unanimous unanimous;
+  unanimous.audited = audited_of<sampling_efforts>(json.at("sampled_again"), json.at("squares"), json.at("weights"));
+  json.at("missed").get_to(unanimous.missed);
+  json.at("by_share").get_to(unanimous.by_share);
+  return unanimous;
+}
+
 }  // namespace
 
 Json json_of(const std::string& text) {
@@ -62,74 +102,15 @@ Spectrum spectrum_of(const Json& json) {
   return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <std::size_t n>
-Json pairs_of(const std::array<AuditedPairs, n>& kinds) {
-  Json pairs = Json::array();
-  for (const AuditedPairs& audited : kinds) pairs.push_back(audited.pairs);
-  return pairs;
-}
-
-template <std::size_t n>
-Json squares_of(const std::array<AuditedPairs, n>& kinds) {
-  Json squares = Json::array();
-  for (const AuditedPairs& audited : kinds) squares.push_back(audited.squares);
-  return squares;
-}
-
-template <std::size_t n>
-Json weights_of(const std::array<AuditedPairs, n>& kinds) {
-  Json weights = Json::array();
-  for (const AuditedPairs& audited : kinds) weights.push_back(audited.weight);
-  return weights;
-}
-
-double sum_of_squares(const nlohmann::json& json) {
-  const auto sum = json.get<double>();
-  if (!(sum >= 0 && std::isfinite(sum))) throw std::out_of_range("a sum of squares is not a number above 0");
-  return sum;
-}
-
-template <std::size_t n>
-std::array<AuditedPairs, n> audited_of(const nlohmann::json& pairs, const nlohmann::json& squares,
-                                       const nlohmann::json& weights) {
-  std::array<AuditedPairs, n> kinds{};
-  for (std::size_t k = 0; k < n; ++k)
-    kinds[k] = {pairs.at(k).get<std::uint64_t>(), sum_of_squares(squares.at(k)), sum_of_squares(weights.at(k))};
-  return kinds;
-}
-
-Json counts_of(const SamplingError::Unanimous& unanimous) {
-  return {{"sampled_again", pairs_of(unanimous.audited)},
-          {"squares", squares_of(unanimous.audited)},
-          {"weights", weights_of(unanimous.audited)},
-          {"missed", unanimous.missed},
-          {"bound", bound_on_miss(unanimous)},
-          {"by_share", unanimous.by_share}};
-}
-
-SamplingError::Unanimous unanimous_of(const nlohmann::json& json) {
-  SamplingError::Unanimous unanimous;
-  unanimous.audited = audited_of<sampling_efforts>(json.at("sampled_again"), json.at("squares"), json.at("weights"));
-  json.at("missed").get_to(unanimous.missed);
-  json.at("by_share").get_to(unanimous.by_share);
-  return unanimous;
-}
-
-}  // namespace
-
 nlohmann::ordered_json json_of(const SamplingError& error) {
   if (!was_audited(error)) return nullptr;
   Json pairs = Json::array();
   Json squares = Json::array();
   Json weights = Json::array();
   for (const auto& of_effort : error.partial) {
-    pairs.push_back(pairs_of(of_effort));
-    squares.push_back(squares_of(of_effort));
-    weights.push_back(weights_of(of_effort));
+    pairs.push_back(members_of(of_effort, &AuditedPairs::pairs));
+    squares.push_back(members_of(of_effort, &AuditedPairs::squares));
+    weights.push_back(members_of(of_effort, &AuditedPairs::weight));
   }
   return {{"sampled_again", pairs},
           {"squares", squares},

@@ -23,7 +23,6 @@ static_assert(std::endian::native == std::endian::little, "the arrays are little
 
 constexpr std::string_view magic = "\x93NUMPY";
 constexpr std::size_t alignment = 64;  // of the first value, as the format asks
-constexpr std::size_t longest_header = 65536;
 
 std::string header(const std::string& type, const std::string& shape) {
   std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
@@ -55,7 +54,7 @@ std::optional<std::string> read_header(std::ifstream& stream) {
   stream.read(start.data(), start.size());
   if (!stream || std::string_view(start.data(), magic.size()) != magic || start[6] < 1 || start[6] > 3) return {};
   const std::size_t length = header_length(stream, start[6]);
-  if (length == 0 || length > longest_header) return {};
+  if (length == 0 || length > 65536) return {};
   std::string text(length, ' ');
   stream.read(text.data(), static_cast<std::streamsize>(length));
   return stream ? std::optional(text) : std::nullopt;
@@ -134,8 +133,7 @@ void read_npy_pieces(const std::filesystem::path& file, std::size_t count,
   if (!good)
     throw InputError(file.string(), "found another array than one of " + std::to_string(count) + " numbers of type '" +
                                         type_of<Number>() + "'; compute the form factors again");
-  constexpr std::size_t bytes_of_piece = std::size_t{1} << 18;
-  std::vector<Number> piece(std::min(count, bytes_of_piece / sizeof(Number)));
+  std::vector<Number> piece(std::min(count, (std::size_t{1} << 18) / sizeof(Number)));
   for (std::size_t first = 0; first < count; first += piece.size()) {
     const std::span<Number> part = std::span(piece).first(std::min(piece.size(), count - first));
     stream.read(reinterpret_cast<char*>(part.data()), static_cast<std::streamsize>(part.size_bytes()));

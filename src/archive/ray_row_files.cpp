@@ -77,23 +77,20 @@ std::string name_begin(const std::string& key) { return "rows_" + key + "_"; }
 
 // 32 bits of a SHA-256 of a block.
 std::int32_t digest(const std::string& key, std::size_t block, std::span<const std::int32_t> words) {
-  constexpr std::size_t digits = 8;
-  constexpr int hexadecimal = 16;
   std::string bytes;
   append_bytes(bytes, block);
   bytes.append(reinterpret_cast<const char*>(words.data()), words.size_bytes());
   const std::array parts{key, std::move(bytes)};
-  return static_cast<std::int32_t>(std::stoul(sha256(parts).substr(0, digits), nullptr, hexadecimal));
+  return static_cast<std::int32_t>(std::stoul(sha256(parts).substr(0, 8), nullptr, 16));
 }
 
 }  // namespace
 
 std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions& options,
                     std::span<const float> bright_densities) {
-  constexpr std::size_t digits = 16;
   const std::array parts{std::string(version()), geometry_hash(mesh), bytes_of_faces(of.scene),
                          bytes_of_effects(of.effects), bytes_of(options, bright_densities)};
-  return sha256(parts).substr(0, digits);
+  return sha256(parts).substr(0, 16);
 }
 
 RowBlocks row_blocks_in(const std::filesystem::path& folder, const std::string& key) {
@@ -302,11 +299,8 @@ std::map<std::string, std::string> meaning_of_stop_files() {
 
 using Json = nlohmann::ordered_json;
 
-// What stored rows may be off by of what their patches see: their entries are floats.
-constexpr double row_sum_tolerance = 1e-5;
-
 std::filesystem::path file_of_half(const std::filesystem::path& folder, std::size_t which, std::size_t half) {
-  return folder / (std::string(file_name::of_half.at(which)) + "_" + std::to_string(half) + ".npy");
+  return in_half(folder, file_name::of_half.at(which), half);
 }
 
 template <class To, class From, class Value>
@@ -457,8 +451,8 @@ void require_sums(const std::filesystem::path& file, const RayRows& rows, const 
     const double sum = row_sum(rows, i);
     const bool is_empty = hits == 0 && rows.first_entry[i] == rows.first_entry[i + 1];
     const double expected = wanted[static_cast<Eigen::Index>(i)];
-    const bool is_weighed = rows.hit_weight[i] >= -row_sum_tolerance;
-    if (is_weighed && (is_empty || std::abs(sum - expected) <= row_sum_tolerance)) continue;
+    const bool is_weighed = rows.hit_weight[i] >= -rounding_of_entries;
+    if (is_weighed && (is_empty || std::abs(sum - expected) <= rounding_of_entries)) continue;
     std::ostringstream found, right;
     found << "form factors that sum to " << sum << " in row " << i + 1;
     right << expected << ", as lost_share.npy says";
@@ -468,9 +462,8 @@ void require_sums(const std::filesystem::path& file, const RayRows& rows, const 
 
 LampValues read_lamp_values(const std::filesystem::path& file, std::size_t patches, std::size_t lamps) {
   // A form factor is a mean of shares of the hemisphere.
-  constexpr float most = 1.001F;
   const LargeArray<float> stored = read_npy_numbers<float>(file, patches * lamps);
-  const auto is_factor = [](float value) { return value >= 0 && value <= most; };
+  const auto is_factor = [](float value) { return value >= 0 && value <= 1.001F; };
   const auto other = std::find_if_not(stored.begin(), stored.end(), is_factor);
   if (other != stored.end()) refuse(file, "a form factor of " + std::to_string(*other), "numbers from 0 to 1");
   return Eigen::Map<const LampValues>(stored.data(), static_cast<Eigen::Index>(patches),
@@ -483,9 +476,8 @@ bool is_side(const PatchMesh& mesh, const PatchRange& patches) {
 }
 
 std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const PatchMesh& mesh) {
-  constexpr std::size_t most = 1000;
   const std::size_t count = npy_count(file);
-  if (count % 2 != 0 || count > 2 * most) refuse(file, std::to_string(count) + " numbers", "two for each lamp");
+  if (count % 2 != 0 || count > 2000) refuse(file, std::to_string(count) + " numbers", "two for each lamp");
   const LargeArray<std::int64_t> stored = read_npy_numbers<std::int64_t>(file, count);
   std::vector<PatchRange> lamps;
   for (std::size_t k = 0; k < count; k += 2) {

@@ -27,19 +27,15 @@ struct Range {
   double high = 0;
 };
 
-// Entries were rounded to float, 6e-8 each, and narrowed as much.
-constexpr double rounding = 1e-5;
-
 // The largest sums that sampled form factors can have. An exchange area is below the mean of both patches' areas, as it
 // is the share of rays from either that arrive, or a form factor below 1 from the smaller one. Sampled by area it has
 // no bound: points at the distance r weigh up to 1 / (2 pi r^2). On patches of size h that share an edge the chance of
 // a weight above K / h^2 is below K^-1.5 / 15, so that of N patches with n samples of each pair none has a row above L
 // but by a chance of N n^-0.5 L^-1.5: 1e-6 for N = 1e5, n = 4 and L = 1e7.
 Eigen::ArrayXd most_row_sums(const FormFactorInfo& info, const PatchMesh& mesh, const Eigen::VectorXd& exposed) {
-  constexpr double by_area = 1e7;
   const Eigen::Map<const Eigen::ArrayXd> area(mesh.area.data(), exposed.size());
   const Eigen::ArrayXd bounded = (static_cast<double>(area.size()) * area + area.sum()) / 2 / exposed.array();
-  return (1 + rounding) * bounded + (info.estimator == Estimator::area ? by_area : 0);
+  return (1 + rounding_of_entries) * bounded + (info.estimator == Estimator::area ? 1e7 : 0);
 }
 
 void require_raw_row_sums(const std::filesystem::path& file, const Eigen::VectorXd& sums, const Eigen::ArrayXd& most) {
@@ -55,7 +51,7 @@ void require_raw_row_sums(const std::filesystem::path& file, const Eigen::Vector
 // Each entry was scaled by the smaller factor of its two rows: a row keeps at least the smallest factor of all, also
 // one that was not cut itself, and a cut row sum is still above 1.
 Range range_of_cut_row(double raw, double largest) {
-  return {raw / std::max(1.0, largest) * (1 - rounding), raw * (1 + rounding)};
+  return {raw / std::max(1.0, largest) * (1 - rounding_of_entries), raw * (1 + rounding_of_entries)};
 }
 
 // Where sum_j F_ij of a row must lie. As computed it is the stored sum, but for rounding. Closure makes it 1 in a
@@ -64,9 +60,9 @@ Range range_of_cut_row(double raw, double largest) {
 Range row_sum_range(const FormFactorInfo& info, const Exchange& exchange, Eigen::Index i, double largest) {
   constexpr double most_overshoot = 0.2;
   const double raw = exchange.raw_row_sum[i];
-  if (!is_closed(info)) return {raw - rounding * (1 + raw), raw + rounding * (1 + raw)};
+  if (!is_closed(info)) return {raw - rounding_of_entries * (1 + raw), raw + rounding_of_entries * (1 + raw)};
   if (info.closure.starts_with(cut_row_sums)) return range_of_cut_row(raw, largest);
-  if (exchange.lost.closed()) return {raw > 0 ? 1 - rounding : 0, 1 + rounding};
+  if (exchange.lost.closed()) return {raw > 0 ? 1 - rounding_of_entries : 0, 1 + rounding_of_entries};
   const double seen = 1 - exchange.lost.escaped[i] - exchange.lost.at_backs[i];
   return {std::min(raw, seen) - most_overshoot, std::max(raw, seen) + most_overshoot};
 }
@@ -91,9 +87,6 @@ void require_row_sums(const std::filesystem::path& folder, const FormFactorInfo&
 // Rows that are read at once, and columns that one thread takes of them: a pair is then set and compared with its
 // mirror image by one thread, or after all rows before.
 constexpr PatchIndex rows_at_once = 64;
-
-// Both halves of a symmetric matrix were rounded to float, each after a division.
-constexpr double reciprocity_tolerance = 1e-5;
 
 Sides sides_of(const std::string& name) {
   for (const Sides sides : {Sides::automatic, Sides::front, Sides::both}) {
@@ -184,7 +177,7 @@ void require_shares(const std::filesystem::path& file, const Eigen::MatrixXd& va
 // Can this be an entry of F? `exchange_area` is A_i F_ij and `other` A_j F_ji, in m^2.
 bool is_plausible(double form_factor, double exchange_area, double other) {
   const double most_difference =
-      reciprocity_tolerance * std::max(exchange_area, other) + static_cast<double>(std::numeric_limits<float>::min());
+      rounding_of_entries * std::max(exchange_area, other) + static_cast<double>(std::numeric_limits<float>::min());
   return std::isfinite(form_factor) && form_factor >= 0 && std::abs(exchange_area - other) <= most_difference;
 }
 

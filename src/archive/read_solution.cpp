@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "archive/scene_hash.h"
+#include "base/tolerances.h"
 #include "output/vtk/read_vtk.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/world.h"
@@ -54,7 +55,6 @@ void require_values(const StoredSolution& stored, Eigen::Index bands, const std:
 // Patches lie within the box of their polygon, and together they are no larger than it. Polygons are plane up to 1e-4
 // of their perimeter.
 void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesystem::path& file) {
-  constexpr double rounding = 1e-6;
   constexpr double planarity = 1e-4;
   const double extent = extent_of(scene);
   for (std::size_t slot = 0; slot + 1 < mesh.first_patch.size(); ++slot) {
@@ -65,7 +65,7 @@ void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesy
       box.extend(corners[k]);
       perimeter += (corners[(k + 1) % corners.size()] - corners[k]).norm();
     }
-    const double length = rounding * extent + planarity * perimeter;
+    const double length = tolerance_of_coordinates * extent + planarity * perimeter;
     double area = 0;
     for (PatchIndex patch = mesh.first_patch[slot]; patch < mesh.first_patch[slot + 1]; ++patch) {
       bool sound = mesh.area[patch] > 0;
@@ -74,7 +74,7 @@ void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesy
       if (!sound) refuse_solution(file, "a patch does not lie in its polygon, or has no area");
       area += mesh.area[patch];
     }
-    if (area > area_vector(corners).norm() * (1 + planarity) + rounding * extent * perimeter)
+    if (area > area_vector(corners).norm() * (1 + planarity) + tolerance_of_coordinates * extent * perimeter)
       refuse_solution(file, "the patches of a polygon are larger than it");
   }
 }

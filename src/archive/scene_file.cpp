@@ -7,6 +7,7 @@
 
 #include "archive/file_names.h"
 #include "archive/json_values.h"
+#include "base/tolerances.h"
 #include "files/reason.h"
 #include "output/file/whole_file.h"
 #include "plan/survey.h"
@@ -123,8 +124,7 @@ Spectrum bands_of(const Json& json, Eigen::Index bands) {
 
 Vector unit_of(const Json& json) {
   Vector vector = vector_of(json);
-  constexpr double off_unit = 1e-6;
-  require(std::abs(vector.norm() - 1) < off_unit, "a direction is not of length 1");
+  require(std::abs(vector.norm() - 1) < tolerance_of_coordinates, "a direction is not of length 1");
   return vector;
 }
 

@@ -23,29 +23,6 @@ void append(std::string& bytes, const Vector& vector) {
   }
 }
 
-}  // namespace
-
-std::string geometry_hash(const PatchMesh& mesh) {
-  // Some patches together: a string of its own for each takes longer than the hash.
-  constexpr PatchIndex together = 4096;
-  std::vector<std::string> parts((mesh.size() + together - 1) / together);
-  parallel_for(parts.size(), [&](std::size_t part) {
-    const auto first = static_cast<PatchIndex>(part * together);
-    std::string& bytes = parts[part];
-    constexpr std::size_t most_numbers = 15;  // of four corners and the normal
-    bytes.reserve(together * (1 + most_numbers * sizeof(double)));
-    for (PatchIndex i = first; i < std::min(mesh.size(), first + together); ++i) {
-      const PatchCorners corners = mesh.corner_points(i);
-      bytes += static_cast<char>(corners.count);
-      for (const Point& corner : std::span<const Point>(corners)) append(bytes, corner);
-      append(bytes, mesh.normal[i]);
-    }
-  });
-  return sha256(parts);
-}
-
-namespace {
-
 class Bytes {
  public:
   void number(double value) {
@@ -147,6 +124,24 @@ void add_lights(Bytes& to, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string geometry_hash(const PatchMesh& mesh) {
+  // Some patches together: a string of its own for each takes longer than the hash.
+  constexpr PatchIndex together = 4096;
+  std::vector<std::string> parts((mesh.size() + together - 1) / together);
+  parallel_for(parts.size(), [&](std::size_t part) {
+    const auto first = static_cast<PatchIndex>(part * together);
+    std::string& bytes = parts[part];
+    bytes.reserve(together * (1 + 15 * sizeof(double)));  // of four corners and the normal
+    for (PatchIndex i = first; i < std::min(mesh.size(), first + together); ++i) {
+      const PatchCorners corners = mesh.corner_points(i);
+      bytes += static_cast<char>(corners.count);
+      for (const Point& corner : std::span<const Point>(corners)) append(bytes, corner);
+      append(bytes, mesh.normal[i]);
+    }
+  });
+  return sha256(parts);
+}
 
 std::string scene_hash(const Scene& scene) {
   Bytes faces, materials, lights;

@@ -10,7 +10,7 @@
 #include "output/file/whole_file.h"
 #include "output/report/write_study.h"
 #include "page/write_page.h"
-#include "study/price.h"
+#include "study/study.h"
 
 #include <iostream>
 #include <sstream>

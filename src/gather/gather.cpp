@@ -7,7 +7,7 @@
 #include "base/tolerances.h"
 #include "gather/sources.h"
 #include "mesh/interpolate.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Dense>

@@ -8,7 +8,7 @@
 #include "lighting/shades.h"
 #include "lighting/sky_irradiance.h"
 #include "mesh/interpolate.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 
 #include <algorithm>
 #include <array>

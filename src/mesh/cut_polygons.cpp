@@ -1,6 +1,7 @@
 #include "mesh/cut_polygons.h"
 
 #include "base/parallel.h"
+#include "base/tolerances.h"
 #include "mesh/noded_lines.h"
 #include "mesh/outline.h"
 #include "scene/extent.h"
@@ -19,18 +20,6 @@
 namespace patchlight {
 namespace {
 
-// Of the detail that is followed, the longest patch edge or less:
-constexpr double line_tolerance = 0.01;
-constexpr double largest_gap_of_detail = 0.25;
-constexpr double farthest_beside = 0.075;
-constexpr double least_beside = 0.0075;  // length times gap, of its square
-constexpr double least_width = 5e-4;     // narrower strips along edges come from rounding
-
-constexpr double least_size_of_lines = 16;  // in tolerances; smaller ones are left out
-constexpr double least_size_over_gap = 4;   // farther from what is smaller its shadow has no edge
-
-constexpr double grid_of_extent = 2e-7;  // the width of the grid on which lines meet
-
 struct Plane {
   Point origin;
   Eigen::Matrix<double, 3, 2> axes;
@@ -46,26 +35,18 @@ Plane plane_along(const Point& origin, const Vector& along, const Vector& normal
   return plane;
 }
 
-// Where on the edge from one point to another, from 0 to 1.
-double place_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point) {
+// Where on an edge a point lies, from 0 to 1.
+double place_on(const FlatLine& edge, const FlatPoint& point) {
+  const auto& [from, to] = edge;
   return (point - from).dot(to - from) / (to - from).squaredNorm();
 }
 
-bool is_on(const FlatPoint& from, const FlatPoint& to, const FlatPoint& point, double near) {
-  const double t = std::clamp(place_on(from, to, point), 0.0, 1.0);
-  return (from + t * (to - from) - point).norm() <= near;
-}
+bool is_on(const FlatLine& edge, const FlatPoint& point, double near) { return to_line(point, edge).norm() <= near; }
 
-// Does a ray along x cross the outline an odd number of times? A seam counts twice.
-bool is_inside(std::span<const FlatPoint> outline, const FlatPoint& point) {
-  bool inside = false;
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    const FlatPoint& from = outline[k];
-    const FlatPoint& to = outline[(k + 1) % outline.size()];
-    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
-    if (from.x() + (point.y() - from.y()) / (to.y() - from.y()) * (to.x() - from.x()) > point.x()) inside = !inside;
-  }
-  return inside;
+double length_of(const std::vector<FlatLine>& lines) {
+  double length = 0;
+  for (const auto& [from, to] : lines) length += (to - from).norm();
+  return length;
 }
 
 // The outline of one polygon in its plane.
@@ -73,7 +54,9 @@ class FlatOutline {
  public:
   FlatOutline(const std::vector<Point>& corners, const Vector& normal, double grid)
       : corners_(corners), plane_(plane_along(corners[0], corners[1] - corners[0], normal)), grid_(grid) {
-    for (const Point& corner : corners) flat_.push_back(plane_.flat(corner));
+    std::vector<FlatPoint> flat;
+    for (const Point& corner : corners) flat.push_back(plane_.flat(corner));
+    edges_ = edges_of(flat);
   }
 
   std::vector<FlatLine> flat(const std::vector<ContactLine>& lines, double least_gap, double largest_gap) const {
@@ -88,12 +71,11 @@ class FlatOutline {
   // The parts of the lines that lie inside, cut where they meet, without those that run along an edge in less than this
   // width.
   std::vector<FlatLine> parts_inside(std::vector<FlatLine> lines, double narrow) const {
-    const std::size_t n = flat_.size();
-    for (std::size_t k = 0; k < n; ++k) lines.push_back({flat_[k], flat_[(k + 1) % n]});
+    lines.insert(lines.end(), edges_.begin(), edges_.end());
     std::vector<FlatLine> parts = noded_lines(lines, grid_);
     std::erase_if(parts, [&](const FlatLine& part) {
       const FlatPoint middle = (part[0] + part[1]) / 2;
-      return edge_at(middle).has_value() || runs_along(part, narrow) || !is_inside(flat_, middle);
+      return !marks_at(middle).empty() || runs_along(part, narrow) || !is_inside(middle, edges_);
     });
     return parts;
   }
@@ -102,27 +84,28 @@ class FlatOutline {
   bool runs_along(const FlatLine& line) const { return runs_along(line, near()); }
 
   bool runs_along(const FlatLine& line, double width) const {
-    for (std::size_t k = 0; k < flat_.size(); ++k) {
-      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
-      if (is_on(flat_[k], to, line[0], width) && is_on(flat_[k], to, line[1], width)) return true;
-    }
-    return false;
+    return std::any_of(edges_.begin(), edges_.end(), [&](const FlatLine& edge) {
+      return is_on(edge, line[0], width) && is_on(edge, line[1], width);
+    });
   }
 
   LineEnd end_at(const FlatPoint& point) const {
-    for (std::size_t k = 0; k < flat_.size(); ++k) {
-      if ((flat_[k] - point).norm() <= near()) return {{}, corners_[k]};
+    for (std::size_t k = 0; k < edges_.size(); ++k) {
+      if ((edges_[k][0] - point).norm() <= near()) return {{}, corners_[k]};
     }
-    const std::optional<std::size_t> edge = edge_at(point);
-    if (!edge) return {{}, plane_.lifted(point)};
-    return {mark_on(*edge, point), {}};
+    const std::vector<Mark> marks = marks_at(point);
+    if (marks.empty()) return {{}, plane_.lifted(point)};
+    return {marks.front(), {}};
   }
 
   // On every edge that goes through a point: both of a seam.
   std::vector<Mark> marks_at(const FlatPoint& point) const {
     std::vector<Mark> marks;
-    for (std::size_t k = 0; k < flat_.size(); ++k) {
-      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) marks.push_back(mark_on(k, point));
+    for (std::size_t k = 0; k < edges_.size(); ++k) {
+      if (!is_on(edges_[k], point, near())) continue;
+      const double t = place_on(edges_[k], point);
+      const bool is_backward = comes_before(corners_[(k + 1) % corners_.size()], corners_[k]);
+      marks.push_back({k, is_backward ? 1 - t : t});
     }
     return marks;
   }
@@ -130,29 +113,14 @@ class FlatOutline {
  private:
   double near() const { return 2 * grid_; }
 
-  std::optional<std::size_t> edge_at(const FlatPoint& point) const {
-    for (std::size_t k = 0; k < flat_.size(); ++k) {
-      if (is_on(flat_[k], flat_[(k + 1) % flat_.size()], point, near())) return k;
-    }
-    return std::nullopt;
-  }
-
-  Mark mark_on(std::size_t edge, const FlatPoint& point) const {
-    const std::size_t next = (edge + 1) % flat_.size();
-    const double t = place_on(flat_[edge], flat_[next], point);
-    return {edge, comes_before(corners_[next], corners_[edge]) ? 1 - t : t};
-  }
-
-  // What is as near to the outline as faces that touch are is on it.
+  // A point as near to the outline as faces that touch are lies on it.
   FlatPoint snapped(const FlatPoint& point) const {
-    constexpr double grids = 10;
-    for (const FlatPoint& corner : flat_) {
-      if ((corner - point).norm() <= grids * grid_) return corner;
+    const double touching = 10 * grid_;
+    for (const auto& [corner, next] : edges_) {
+      if ((corner - point).norm() <= touching) return corner;
     }
-    for (std::size_t k = 0; k < flat_.size(); ++k) {
-      const FlatPoint& from = flat_[k];
-      const FlatPoint& to = flat_[(k + 1) % flat_.size()];
-      if (is_on(from, to, point, grids * grid_)) return from + place_on(from, to, point) * (to - from);
+    for (const FlatLine& edge : edges_) {
+      if (is_on(edge, point, touching)) return edge[0] + place_on(edge, point) * (edge[1] - edge[0]);
     }
     return point;
   }
@@ -160,7 +128,7 @@ class FlatOutline {
   const std::vector<Point>& corners_;
   Plane plane_;
   double grid_;
-  std::vector<FlatPoint> flat_;
+  std::vector<FlatLine> edges_;
 };
 
 // The diagonal of all of them together.
@@ -180,7 +148,7 @@ struct GapClass {
 std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<ContactLine>& contacts, double detail) {
   std::vector<double> gaps;
   for (const ContactLine& line : contacts) {
-    if (line.gap <= largest_gap_of_detail * detail) gaps.push_back(line.gap);
+    if (line.gap <= 0.25 * detail) gaps.push_back(line.gap);
   }
   std::sort(gaps.begin(), gaps.end(), std::greater());
   std::vector<GapClass> classes;
@@ -192,15 +160,18 @@ std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<Conta
   return classes;
 }
 
+// Are lines worth others beside them?
+bool are_long(const std::vector<FlatLine>& lines, double gap, double detail) {
+  return length_of(lines) * gap >= 0.0075 * detail * detail;
+}
+
 // Light that gets under an edge fades over some widths of the gap: one and three of them from the edge there are lines
 // as well, where patches would be wider and the edge is long enough for it to matter.
 std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double grid, double gap, double detail) {
-  double length = 0;
-  for (const FlatLine& line : edges) length += (line[1] - line[0]).norm();
-  if (length * gap < least_beside * detail * detail) return {};
+  if (!are_long(edges, gap, detail)) return {};
   std::vector<FlatLine> beside;
   for (const double widths : {1.0, 3.0}) {
-    if (widths * gap > farthest_beside * detail) continue;
+    if (widths * gap > 0.075 * detail) continue;
     const std::vector<FlatLine> some = lines_beside(edges, grid, widths * gap);
     beside.insert(beside.end(), some.begin(), some.end());
   }
@@ -209,12 +180,8 @@ std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, doubl
 
 // Not those of lines along the outline, unless they are worth lines beside them.
 bool matters(const FlatOutline& outline, const GapClass& gap, double detail) {
-  double length = 0;
-  for (const FlatLine& line : gap.lines) {
-    if (!outline.runs_along(line)) return true;
-    length += (line[1] - line[0]).norm();
-  }
-  return length * gap.widest >= least_beside * detail * detail;
+  return are_long(gap.lines, gap.widest, detail) ||
+         !std::all_of(gap.lines.begin(), gap.lines.end(), [&](const auto& line) { return outline.runs_along(line); });
 }
 
 CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const std::vector<ContactLine>& contacts,
@@ -224,8 +191,9 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
   const FlatOutline outline(cut.corners, normal, grid);
   std::vector<FlatLine> lines;
   for (const GapClass& gap : by_gap(outline, contacts, detail)) {
-    const double tolerance = line_tolerance * detail;
-    const double least_size = std::max(least_size_of_lines * tolerance, least_size_over_gap * gap.widest);
+    const double tolerance = 0.01 * detail;
+    // Farther away than four times its size the shadow of a line has no edge.
+    const double least_size = std::max(16 * tolerance, 4 * gap.widest);
     if (size_of(gap.lines) < least_size || !matters(outline, gap, detail)) continue;
     const std::vector<FlatLine> edges = simplified_lines(gap.lines, grid, tolerance, least_size);
     const std::vector<FlatLine> beside = lines_beside_gap(edges, grid, gap.widest, detail);
@@ -233,7 +201,8 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
     lines.insert(lines.end(), beside.begin(), beside.end());
   }
   if (lines.empty()) return cut;
-  for (const FlatLine& part : outline.parts_inside(std::move(lines), least_width * detail)) {
+  // Narrower strips along edges come from rounding.
+  for (const FlatLine& part : outline.parts_inside(std::move(lines), 5e-4 * detail)) {
     cut.lines.push_back({outline.end_at(part[0]), outline.end_at(part[1])});
     for (const FlatPoint& end : part) {
       if (!outline.end_at(end).mark) continue;
@@ -243,43 +212,9 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
   return cut;
 }
 
-}  // namespace
-
-double followed_detail(const ContactLines& contacts, double max_edge) {
-  constexpr double rounding = 1e-9;
-  const double detail = std::min(contacts.of_edge * max_edge, contacts.detail);
-  return std::ldexp(contacts.size, static_cast<int>(std::floor(std::log2(detail / contacts.size) + rounding)));
-}
-
-std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
-                                     const PatchEdges& edges) {
-  return cut_again({}, scene, loose, contacts, edges, false);
-}
-
-std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
-                                  const ContactLines& contacts, const PatchEdges& edges, bool same_detail) {
-  const bool any = !contacts.on.empty();
-  const double grid = any ? grid_of_extent * extent_of(scene) : 0;
-  const double detail = any ? followed_detail(contacts, edges.max_edge) : 0;
-  static const std::vector<ContactLine> none;
-  const bool all = polygons.empty();
-  polygons.resize(scene.polygons.size());
-  parallel_for(polygons.size(), [&](std::size_t p) {
-    const std::vector<ContactLine>& lines = any ? contacts.on[p] : none;
-    const bool is_loose = !loose.empty() && !loose[p].empty();
-    if (!all && !is_loose && (same_detail || lines.empty())) return;
-    const auto polygon = static_cast<PolygonIndex>(p);
-    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, edges.max_edge), front_normal(scene, polygon),
-                              lines, detail, grid);
-  });
-  return polygons;
-}
-
-namespace {
-
 using EdgeKey = std::array<double, 6>;
 
-// The ends of an edge, that which comes first first.
+// The ends of an edge, in the order of comes_before().
 EdgeKey key_of(const std::vector<Point>& corners, std::size_t edge) {
   const Point* a = &corners[edge];
   const Point* b = &corners[(edge + 1) % corners.size()];
@@ -324,7 +259,7 @@ MarksByEdge marks_by_edge(const std::vector<CutPolygon>& polygons) {
   return all;
 }
 
-// The places on an edge of a polygon where lines of it or of its neighbour end.
+// The places on an edge of a polygon where lines of it or of its neighbor end.
 std::vector<double> places_on(const MarksByEdge& all, const CutPolygon& polygon, std::size_t edge) {
   const auto found = all.find(key_of(polygon.corners, edge));
   if (found == all.end()) return {};
@@ -380,6 +315,36 @@ std::vector<Outline> with_shared_parts(std::vector<Outline> outlines) {
 }
 
 }  // namespace
+
+double followed_detail(const ContactLines& contacts, double max_edge) {
+  const double detail = std::min(contacts.of_edge * max_edge, contacts.detail);
+  return std::ldexp(contacts.size,
+                    static_cast<int>(std::floor(std::log2(detail / contacts.size) + tolerance_of_shapes)));
+}
+
+std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
+                                     const PatchEdges& edges) {
+  return cut_again({}, scene, loose, contacts, edges, false);
+}
+
+std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
+                                  const ContactLines& contacts, const PatchEdges& edges, bool same_detail) {
+  const bool any = !contacts.on.empty();
+  const double grid = any ? 2e-7 * extent_of(scene) : 0;  // on which lines meet
+  const double detail = any ? followed_detail(contacts, edges.max_edge) : 0;
+  static const std::vector<ContactLine> none;
+  const bool all = polygons.empty();
+  polygons.resize(scene.polygons.size());
+  parallel_for(polygons.size(), [&](std::size_t p) {
+    const std::vector<ContactLine>& lines = any ? contacts.on[p] : none;
+    const bool is_loose = !loose.empty() && !loose[p].empty();
+    if (!all && !is_loose && (same_detail || lines.empty())) return;
+    const auto polygon = static_cast<PolygonIndex>(p);
+    polygons[p] = cut_polygon(coarse_outline(scene, loose, polygon, edges.max_edge), front_normal(scene, polygon),
+                              lines, detail, grid);
+  });
+  return polygons;
+}
 
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges,
                                   std::span<const std::uint8_t> is_needed) {

@@ -1,6 +1,7 @@
 #include "mesh/interpolate.h"
 
 #include "base/parallel.h"
+#include "base/tolerances.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -31,44 +32,12 @@ PatchesAtVertices::PatchesAtVertices(const PatchMesh& mesh) : first_(mesh.vertic
 
 namespace {
 
-// Normals of patches that are the same surface have a product above this one.
-constexpr double same_facing = 0.9;
-
-}  // namespace
-
-Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
-  const PatchesAtVertices at_vertex(mesh);
-  Field means = Field::Zero(values.rows(), values.cols());
-  parallel_for(mesh.size(), [&](std::size_t at) {
-    const auto i = static_cast<PatchIndex>(at);
-    auto sum = means.row(i);
-    double areas = 0;
-    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
-      for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.normal[i].dot(mesh.normal[j]) < same_facing) continue;
-        sum += area[j] * values.row(j);
-        areas += area[j];
-      }
-    }
-    sum /= areas;
-  });
-  return means;
-}
-
-Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
-  return mean_around(mesh, area, values.square()).sqrt();
-}
-
-namespace {
-
-// Boxes that are this share of their size apart may touch: patches of a tilted polygon do so within rounding.
-constexpr double touching_slack = 1e-9;
-
+// Patches of a tilted polygon touch but for rounding.
 Box padded_box_of(const PatchMesh& mesh, PatchIndex patch) {
   const PatchCorners corners = mesh.corner_points(patch);
   Box box;
   for (const Point& corner : std::span<const Point>(corners)) box.extend(corner);
-  const Vector pad = Vector::Constant(touching_slack * box.diagonal().norm());
+  const Vector pad = Vector::Constant(tolerance_of_shapes * box.diagonal().norm());
   return {box.min() - pad, box.max() + pad};
 }
 
@@ -99,11 +68,9 @@ Row row_of(const PatchMesh& mesh, PatchRange range) {
   return row;
 }
 
-// What two convex patches of one plane have in common: the one is cut by the planes that stand on the edges of the
-// other (Sutherland and Hodgman 1974).
-std::vector<Point> overlap(const PatchCorners& patch, const Vector& normal, const PatchCorners& other) {
-  const std::span<const Point> cut_by = patch;
-  const std::span<const Point> whole = other;
+// The common part of two convex patches of one plane: the one is cut by the planes that stand on the edges of the other
+// (Sutherland and Hodgman 1974).
+std::vector<Point> overlap(std::span<const Point> cut_by, const Vector& normal, std::span<const Point> whole) {
   std::vector<Point> left(whole.begin(), whole.end());
   for (std::size_t k = 0; k < cut_by.size() && !left.empty(); ++k) {
     const Vector along = cut_by[(k + 1) % cut_by.size()] - cut_by[k];
@@ -133,7 +100,7 @@ std::vector<Row> rows_of(const PatchMesh& mesh) {
   return rows;
 }
 
-// Means over the patches of value(k, point) in the middle of what each has in common with a patch k of `other`.
+// Means over the patches of value(k, point) in the middle of the common part with each patch k of `other`.
 template <typename Value>
 Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns, Value value) {
   assert(mesh.first_patch.size() == other.first_patch.size());
@@ -141,7 +108,7 @@ Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index colum
   Field means = Field::Zero(mesh.size(), columns);
   parallel_for(mesh.size(), [&](std::size_t i) {
     const auto patch = static_cast<PatchIndex>(i);
-    const Row& row = rows[2 * static_cast<std::size_t>(mesh.polygon[i]) + static_cast<std::size_t>(mesh.side[i])];
+    const Row& row = rows[side_slot(mesh.polygon[i], mesh.side[i])];
     double area = 0;
     for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
       const double share = area_vector(common).norm();
@@ -172,57 +139,6 @@ Eigen::Vector3d limited(const Eigen::Vector3d& slope, const PatchMesh& mesh, Pat
   }
   return share * slope;
 }
-
-}  // namespace
-
-Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
-  assert(values.rows() == other.size());
-  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
-}
-
-Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
-  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
-  const Eigen::Index columns = field.values.cols();
-  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
-    const Vector offset = point - other.centroid[k];
-    Field value = field.values.row(k);
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
-    }
-    return value;
-  });
-}
-
-SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
-  const PatchesAtVertices at_vertex(mesh);
-  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
-  parallel_for(mesh.size(), [&](std::size_t row) {
-    const auto i = static_cast<PatchIndex>(row);
-    // Least squares over the patches around; without a slope across the patch.
-    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
-    Field least = values.row(i);
-    Field most = values.row(i);
-    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
-      for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
-        const Vector way = mesh.centroid[j] - mesh.centroid[i];
-        moments += way * way.transpose();
-        right += way * (values.row(j) - values.row(i)).matrix();
-        least = least.min(values.row(j));
-        most = most.max(values.row(j));
-      }
-    }
-    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const Bounds bounds{least(0, c) - values(i, c), most(0, c) - values(i, c)};
-      field.slopes.row(i).segment(3 * c, 3) = limited(slope.col(c), mesh, i, bounds).transpose();
-    }
-  });
-  return field;
-}
-
-namespace {
 
 // The middles of edges that are those of a patch still, in the order of the cuts.
 std::vector<Middle> hanging(const PatchMesh& mesh) {
@@ -271,13 +187,83 @@ Weights inverse_bilinear(const PatchCorners& patch, const Vector& normal, const 
 
 }  // namespace
 
+Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+  const PatchesAtVertices at_vertex(mesh);
+  Field means = Field::Zero(values.rows(), values.cols());
+  parallel_for(mesh.size(), [&](std::size_t at) {
+    const auto i = static_cast<PatchIndex>(at);
+    auto sum = means.row(i);
+    double areas = 0;
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.normal[i].dot(mesh.normal[j]) < 0.9) continue;
+        sum += area[j] * values.row(j);
+        areas += area[j];
+      }
+    }
+    sum /= areas;
+  });
+  return means;
+}
+
+Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values) {
+  return mean_around(mesh, area, values.square()).sqrt();
+}
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
+  assert(values.rows() == other.size());
+  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
+}
+
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
+  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
+  const Eigen::Index columns = field.values.cols();
+  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
+    const Vector offset = point - other.centroid[k];
+    Field value = field.values.row(k);
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
+    }
+    return value;
+  });
+}
+
+SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
+  const PatchesAtVertices at_vertex(mesh);
+  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
+  parallel_for(mesh.size(), [&](std::size_t row) {
+    const auto i = static_cast<PatchIndex>(row);
+    // Least squares over the patches around; without a slope across the patch.
+    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
+    Field least = values.row(i);
+    Field most = values.row(i);
+    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
+      for (const PatchIndex j : at_vertex[vertex]) {
+        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
+        const Vector way = mesh.centroid[j] - mesh.centroid[i];
+        moments += way * way.transpose();
+        right += way * (values.row(j) - values.row(i)).matrix();
+        least = least.min(values.row(j));
+        most = most.max(values.row(j));
+      }
+    }
+    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
+    for (Eigen::Index c = 0; c < values.cols(); ++c) {
+      const Bounds bounds{least(0, c) - values(i, c), most(0, c) - values(i, c)};
+      field.slopes.row(i).segment(3 * c, 3) = limited(slope.col(c), mesh, i, bounds).transpose();
+    }
+  });
+  return field;
+}
+
 Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const CornerWeights& weights) {
   Field sum = Field::Zero(static_cast<Eigen::Index>(mesh.vertices.size()), patch_values.cols());
   std::vector<double> total(mesh.vertices.size(), 0);
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
-    const int count = mesh.corner_points(patch).count;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      const std::uint32_t vertex = mesh.corners[patch][k];
+    const std::span<const std::uint32_t> corners = corner_vertices(mesh, patch);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const std::uint32_t vertex = corners[k];
       const double weight = weights(patch, static_cast<Eigen::Index>(k));
       sum.row(vertex) += weight * patch_values.row(patch);
       total[vertex] += weight;

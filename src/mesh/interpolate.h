@@ -29,8 +29,8 @@ class PatchesAtVertices {
   std::vector<PatchIndex> patches_;
 };
 
-/// Means, by the areas given in m^2, over the patches that share a vertex with a patch and face as it does, within 25
-/// degrees, itself among them: of a curved or triangulated surface as well.
+/// Means, by the areas given in m^2, over a patch and the patches that share a vertex with it and face as it does,
+/// within 25 degrees.
 Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
 
 /// Root mean squares over the same patches.
@@ -46,7 +46,7 @@ Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldVie
 /// A field that is linear on every patch.
 struct SlopedField {
   Field values;  ///< the means of the patches
-  Field slopes;  ///< three columns for each of `values`: the gradient, per metre
+  Field slopes;  ///< three columns for each of `values`: the gradient, per meter
 };
 
 /// A field with the slopes that the means of the patches around show, by least squares; patches around are those of the

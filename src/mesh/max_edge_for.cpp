@@ -28,10 +28,29 @@ double diameter(const std::vector<Point>& points) {
   return box.diagonal().norm();
 }
 
-// Numbers of patches by the longest edge, as far as they are known.
-using Numbers = std::map<double, double>;
+// Numbers of patches by the longest edge, each counted once.
+class Numbers {
+ public:
+  explicit Numbers(std::function<double(double)> count) : count_(std::move(count)) {}
 
-using NumberWith = std::function<double(double)>;  // by the longest edge
+  double with_edge(double edge) {
+    const auto [known, is_new] = known_.try_emplace(edge, 0.0);
+    if (is_new) known->second = count_(edge);
+    return known->second;
+  }
+  const std::map<double, double>& known() const { return known_; }
+  // The edge with the number that is nearest.
+  double nearest(double wanted) const {
+    const auto nearer = [wanted](const auto& a, const auto& b) {
+      return std::abs(a.second - wanted) < std::abs(b.second - wanted);
+    };
+    return std::min_element(known_.begin(), known_.end(), nearer)->first;
+  }
+
+ private:
+  std::function<double(double)> count_;
+  std::map<double, double> known_;
+};
 
 // Edges between which that for some number of patches lies, metres.
 struct Bracket {
@@ -41,8 +60,8 @@ struct Bracket {
   double many = 0;
 };
 
-// What numbers that are known tell of the edge for another one, which is more than that of the longest.
-Bracket bracket_of(const Numbers& numbers, double wanted) {
+// From the known numbers; `wanted` is more than that of the longest edge.
+Bracket bracket_of(const std::map<double, double>& numbers, double wanted) {
   const auto too_long =
       std::find_if(numbers.begin(), numbers.end(), [wanted](const auto& entry) { return entry.second < wanted; });
   assert(too_long != numbers.end());
@@ -62,9 +81,8 @@ double guess_in(const Bracket& bracket, double wanted, double least, double firs
   }
   if (first < bracket.too_long) return first;
   // Few faces may be cut yet of many that are as large: one step takes no more than sixteen times as many patches.
-  constexpr double shortest_step = 0.25;
   if (bracket.few <= least) return 0.5 * bracket.too_long;
-  return bracket.too_long * std::max(shortest_step, std::sqrt((bracket.few - least) / (wanted - least)));
+  return bracket.too_long * std::max(0.25, std::sqrt((bracket.few - least) / (wanted - least)));
 }
 
 double middle_of(const Bracket& bracket) {
@@ -77,17 +95,9 @@ double possible(std::size_t patches) {
   return wanted;
 }
 
-// The edge in `numbers` with the number that is nearest.
-double nearest_in(const Numbers& numbers, double wanted) {
-  const auto nearer = [wanted](const auto& a, const auto& b) {
-    return std::abs(a.second - wanted) < std::abs(b.second - wanted);
-  };
-  return std::min_element(numbers.begin(), numbers.end(), nearer)->first;
-}
-
 }  // namespace
 
-// What is known of the polygons for one edge, and of the number of their patches for several.
+// The polygons for one edge, and the numbers of their patches for several.
 class EdgeSearch::PatchNumber {
  public:
   PatchNumber(const Scene& scene, const KeptSides& sides, const ContactLines& contacts)
@@ -98,61 +108,41 @@ class EdgeSearch::PatchNumber {
         whole_(scene.polygons.size()),
         longest_(diameter(scene)) {}
 
-  double with_edge(double edge) {
-    const auto [known, is_new] = numbers_.try_emplace(edge, 0.0);
-    if (is_new) known->second = counted(edge);
-    return known->second;
-  }
+  Numbers numbers{[this](double edge) { return counted(edge); }};
+  Numbers parts_of_parents{[this](double edge) { return counted_nested(edge); }};
 
-  // Of parents with this edge the parts.
-  double nested_with_edge(double edge) {
-    const auto [known, is_new] = nested_numbers_.try_emplace(edge, 0.0);
-    if (is_new) known->second = counted_nested(edge);
-    return known->second;
-  }
+  double least() { return numbers.with_edge(longest_); }
 
-  double edge_for(double wanted, double close_enough) {
-    return found(
-        numbers_, [this](double edge) { return with_edge(edge); }, wanted, close_enough);
-  }
-
-  double nested_edge_for(double wanted, double close_enough) {
-    return found(
-        nested_numbers_, [this](double edge) { return nested_with_edge(edge); }, wanted, close_enough);
-  }
-
-  double least() { return with_edge(longest_); }
-
- private:
-  // Within `close_enough` of what is wanted above the least: where that is nearly all, a small part of all tells
-  // nothing of how finely the large faces are cut.
-  double found(const Numbers& numbers, const NumberWith& number_with, double wanted, double close_enough) const {
-    constexpr int most_guesses = 100;
+  // The edge for a number of patches, within `close_enough` of what is wanted above the least: where that is nearly
+  // all, a small part of all tells nothing of how finely the large faces are cut.
+  double edge_for(Numbers& counts, std::size_t patches, double close_enough) const {
+    const double wanted = possible(patches);
     // 1. No number below that of the uncut scene.
-    const double least = number_with(longest_);
+    const double least = counts.with_edge(longest_);
     if (least >= wanted) return longest_;
-    //    The first guess is for a sixteenth of the patches: a cheap look at how many a square metre gets.
+    //    The first guess is for a sixteenth of the patches: a cheap look at how many a square meter gets.
     const double first = std::min(0.5 * longest_, 4 * std::sqrt(kept_area(scene_, sides_) / wanted));
 
     // 2. Keep the edge between one that gives too few patches and one that gives too many. Where the number changes in
     //    steps, so that one end stays where it is, halve the interval.
     const double same_edge = 1 + close_enough / 2;  // as the number goes as edge^-2
     const double off = close_enough * (wanted - least);
-    double best = nearest_in(numbers, wanted);
+    double best = counts.nearest(wanted);
     int same_end = 0;
-    for (int guess = 0; guess < most_guesses && std::abs(numbers.at(best) - wanted) > off; ++guess) {
-      const Bracket bracket = bracket_of(numbers, wanted);
+    for (int guess = 0; guess < 100 && std::abs(counts.with_edge(best) - wanted) > off; ++guess) {
+      const Bracket bracket = bracket_of(counts.known(), wanted);
       if (bracket.too_long <= same_edge * bracket.too_short) break;
       const double likely = guess_in(bracket, wanted, least, first);
       const bool inside = likely > bracket.too_short && likely < bracket.too_long && std::abs(same_end) < 2;
-      const bool is_few = number_with(inside ? likely : middle_of(bracket)) < wanted;
+      const bool is_few = counts.with_edge(inside ? likely : middle_of(bracket)) < wanted;
       same_end = is_few ? std::max(same_end, 0) + 1 : std::min(same_end, 0) - 1;
       if (!inside) same_end = 0;
-      best = nearest_in(numbers, wanted);
+      best = counts.nearest(wanted);
     }
     return best;
   }
 
+ private:
   double counted(double edge) {
     std::vector<std::size_t> counts(scene_.polygons.size(), 0);
     const std::vector<Outline> outlines = outlines_for(edge);
@@ -187,14 +177,11 @@ class EdgeSearch::PatchNumber {
   // outline of a polygon depend on the longest edge (lattice_spacing() in polygon_mesh.cpp): then its patches are
   // remembered, as long as the same lines are followed.
   std::vector<Outline> outlines_for(double edge) {
-    constexpr double far_smaller = 2;
     const double detail = contacts_.on.empty() ? 0 : followed_detail(contacts_, edge);
     const bool same_detail = detail_ == detail;
     polygons_ = cut_again(std::move(polygons_), scene_, loose_, contacts_, edge, same_detail);
     detail_ = detail;
-    const auto is_small = [&](std::size_t p) {
-      return !is_loose(p) && edge >= far_smaller * diameter(polygons_[p].corners);
-    };
+    const auto is_small = [&](std::size_t p) { return !is_loose(p) && edge >= 2 * diameter(polygons_[p].corners); };
     std::vector<std::uint8_t> is_needed(polygons_.size());
     parallel_for(is_needed.size(), [&](std::size_t p) {
       if (!same_detail || !is_small(p)) whole_[p].reset();
@@ -218,8 +205,6 @@ class EdgeSearch::PatchNumber {
   std::vector<CutPolygon> polygons_;                       // with these lines
   std::vector<std::optional<std::vector<double>>> whole_;  // longest edges of the patches of polygons that stay whole
   double longest_;                                         // metres: that leaves the scene uncut
-  Numbers numbers_;
-  Numbers nested_numbers_;
 };
 
 std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,
@@ -249,20 +234,16 @@ EdgeSearch::EdgeSearch(const Scene& scene, const KeptSides& sides, const Contact
 
 EdgeSearch::~EdgeSearch() = default;
 
-double EdgeSearch::patches_with(double max_edge) { return number_->with_edge(max_edge); }
+double EdgeSearch::patches_with(double max_edge) { return number_->numbers.with_edge(max_edge); }
 
-double EdgeSearch::nested_patches_with(double max_edge) { return number_->nested_with_edge(max_edge); }
+double EdgeSearch::nested_patches_with(double max_edge) { return number_->parts_of_parents.with_edge(max_edge); }
 
 std::size_t EdgeSearch::least_patches() { return static_cast<std::size_t>(number_->least()); }
 
-double EdgeSearch::edge_for(std::size_t patches) {
-  constexpr double close_enough = 0.005;
-  return number_->edge_for(possible(patches), close_enough);
-}
+double EdgeSearch::edge_for(std::size_t patches) { return number_->edge_for(number_->numbers, patches, 0.005); }
 
 double EdgeSearch::nested_edge_for(std::size_t patches) {
-  constexpr double close_enough = 0.05;
-  return number_->nested_edge_for(possible(patches), close_enough);
+  return number_->edge_for(number_->parts_of_parents, patches, 0.05);
 }
 
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts) {

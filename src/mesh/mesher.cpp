@@ -4,6 +4,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/sides.h"
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/outline.h"
@@ -32,15 +33,15 @@ PatchCorners PatchMesh::corner_points(PatchIndex patch) const {
 }
 
 PatchRange PatchMesh::patches_on(PolygonIndex on_polygon, Side on_side) const {
-  const std::size_t slot = 2 * static_cast<std::size_t>(on_polygon) + static_cast<std::size_t>(on_side);
+  const std::size_t slot = side_slot(on_polygon, on_side);
   return {first_patch[slot], first_patch[slot + 1]};
 }
 
 namespace {
 
-// An edge of an outline, by whose ends its neighbours are found.
+// An edge of an outline, by whose ends its neighbors are found.
 struct PlacedEdge {
-  Point first, last;  // its ends, that which comes first first
+  Point first, last;  // its ends, in the order of comes_before()
   std::uint32_t polygon;
   std::uint32_t edge;
   bool forward;  // the outline goes from the first to the last
@@ -77,9 +78,9 @@ void for_each_shared(std::span<const PlacedEdge> edges, const auto& visit) {
   }
 }
 
-// From an edge into the face, perpendicular to the edge; unit.
-Vector way_in(const Outline& outline, const PlacedEdge& edge) {
-  const Vector along = edge.forward ? edge.last - edge.first : edge.first - edge.last;
+// From the edge after a corner into the face, perpendicular to the edge; unit.
+Vector way_in(const Outline& outline, std::size_t corner) {
+  const Vector along = outline.corners[(corner + 1) % outline.corners.size()] - outline.corners[corner];
   return outline.normal.cross(along).normalized();
 }
 
@@ -87,12 +88,12 @@ Vector way_in(const Outline& outline, const PlacedEdge& edge) {
 bool sees(const PlacedEdge& a, const PlacedEdge& b, std::span<const Outline> outlines, const KeptSides& sides) {
   const Outline& one = outlines[a.polygon];
   const Outline& other = outlines[b.polygon];
-  const Vector into_one = way_in(one, a);
-  const Vector into_other = way_in(other, b);
+  const Vector into_one = way_in(one, a.edge);
+  const Vector into_other = way_in(other, b.edge);
   if (into_one.dot(into_other) < -smooth_cosine) return false;
-  constexpr double flat = 1e-3;  // the sine of an angle at which two faces lie on each other
+  // At angles with a smaller sine two faces lie on each other.
   const auto is_kept = [&](std::uint32_t polygon, double height) {
-    return height > flat ? sides.front[polygon] != 0 : height < -flat && sides.back[polygon] != 0;
+    return std::abs(height) > 1e-3 && (height > 0 ? sides.front : sides.back)[polygon] != 0;
   };
   return is_kept(a.polygon, one.normal.dot(into_other)) && is_kept(b.polygon, other.normal.dot(into_one));
 }
@@ -103,20 +104,20 @@ Grading grading_along(const Outline& outline, const PlacedEdge& edge) {
   return edge.forward ? grading : Grading{grading.at_to, grading.at_from};
 }
 
-// Takes back what shrinks patches along an edge towards ends where the neighbour's do not. Is there any?
-bool even_out(Outline& outline, const PlacedEdge& edge, const Grading& neighbour) {
+// Grades an edge no more toward ends where the neighbor's patches do not shrink. Returns false when there are none.
+bool even_out(Outline& outline, const PlacedEdge& edge, const Grading& neighbor) {
   const Grading own = grading_along(outline, edge);
   const auto clear = [&](bool at_first) {
     outline.is_graded[(edge.edge + (edge.forward == at_first ? 3 : 1)) % 4] = 0;
   };
-  const bool first = own.at_from && !neighbour.at_from;
-  const bool last = own.at_to && !neighbour.at_to;
+  const bool first = own.at_from && !neighbor.at_from;
+  const bool last = own.at_to && !neighbor.at_to;
   if (first) clear(true);
   if (last) clear(false);
   return first || last;
 }
 
-// The same outlines, where those that become grids of quadrilaterals know towards which of their edges patches shrink:
+// The same outlines, where those that become grids of quadrilaterals know toward which of their edges patches shrink:
 // edges that they share with a face they see there at less than 150 degrees (docs/theory/edges-and-contacts.md). Faces
 // that go on smoothly over a common edge have the same points there: where one of them cannot shrink its patches along
 // that edge, the other does not. O(n log n) for n edges, and O(n) for every face of a strip along which that goes on.
@@ -148,10 +149,7 @@ struct BoundaryVertices {
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
-// A surface that leaves another by less than this sine, a tenth of a degree, lies in it.
-constexpr double flat_sine = 2e-3;
-
-// OutlineCorners of all outlines are numbered through; an edge has the number of the corner where it begins.
+// The corners of all outlines are numbered through; an edge has the number of the corner where it begins.
 struct OutlineCorners {
   std::vector<std::uint32_t> first;  // per polygon, one more at the end
 
@@ -225,16 +223,16 @@ class AllEdges {
     });
   }
 
-  // Does a third polygon stand on the edge between two, on the side of them that is lit? A slab that ends at two walls,
-  // one above the other, parts the light of the storeys.
+  // Does a third polygon rise from the edge between two, by over a tenth of a degree, on their lit side? A slab that
+  // ends at two walls, one above the other, parts the light of the stories.
   bool wall_between(const OutlineEdge& a, const OutlineEdge& b, Side side) const {
     const double sign = side == Side::front ? 1 : -1;
     const auto range = std::equal_range(edges_.begin(), edges_.end(), Edge{a.low, a.high, 0, 0}, before);
     return std::any_of(range.first, range.second, [&](const Edge& edge) {
       if (edge.polygon == a.polygon || edge.polygon == b.polygon) return false;
-      const Vector inward = inward_from(edge);
-      return sign * inward.dot(outlines_[a.polygon].normal) > flat_sine &&
-             sign * inward.dot(outlines_[b.polygon].normal) > flat_sine;
+      const Vector inward = way_in(outlines_[edge.polygon], edge.corner - corners_.first[edge.polygon]);
+      const auto rises = [&](std::uint32_t from) { return sign * inward.dot(outlines_[from].normal) > 2e-3; };
+      return rises(a.polygon) && rises(b.polygon);
     });
   }
 
@@ -244,24 +242,15 @@ class AllEdges {
   };
   static bool before(const Edge& a, const Edge& b) { return std::tuple(a.low, a.high) < std::tuple(b.low, b.high); }
 
-  // From an edge into its polygon, along its plane.
-  Vector inward_from(const Edge& edge) const {
-    const Outline& outline = outlines_[edge.polygon];
-    const std::uint32_t first = corners_.first[edge.polygon];
-    const Vector along =
-        outline.corners[corners_.next(edge.polygon, edge.corner) - first] - outline.corners[edge.corner - first];
-    return outline.normal.cross(along).normalized();
-  }
-
   std::span<const Outline> outlines_;
   const OutlineCorners& corners_;
   std::vector<Edge> edges_;
 };
 
-// Per edge the edge of the smooth neighbour, or none.
-std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, std::span<const OutlineEdge> edges,
-                                             std::size_t corner_count, const AllEdges& all, Side side) {
-  std::vector<std::uint32_t> neighbour(corner_count, none);
+// Per edge the edge of the smooth neighbor, or none.
+std::vector<std::uint32_t> smooth_neighbors(std::span<const Outline> outlines, std::span<const OutlineEdge> edges,
+                                            std::size_t corner_count, const AllEdges& all, Side side) {
+  std::vector<std::uint32_t> neighbor(corner_count, none);
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end].place() == edges[begin].place()) ++end;
     if (end - begin != 2) continue;
@@ -270,36 +259,27 @@ std::vector<std::uint32_t> smooth_neighbours(std::span<const Outline> outlines, 
     if (a.forward == b.forward) continue;
     if (outlines[a.polygon].normal.dot(outlines[b.polygon].normal) <= smooth_cosine) continue;
     if (all.wall_between(a, b, side)) continue;
-    neighbour[a.corner] = b.corner;
-    neighbour[b.corner] = a.corner;
+    neighbor[a.corner] = b.corner;
+    neighbor[b.corner] = a.corner;
   }
-  return neighbour;
-}
-
-std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t corner) {
-  while (parent[corner] != corner) corner = parent[corner] = parent[parent[corner]];
-  return corner;
+  return neighbor;
 }
 
 // Per corner the first of the corners it is united with.
-std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const std::uint32_t> neighbour) {
-  std::vector<std::uint32_t> next(neighbour.size());
+std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const std::uint32_t> neighbor) {
+  std::vector<std::uint32_t> next(neighbor.size());
   for (std::uint32_t p = 0; p + 1 < corners.first.size(); ++p) {
     for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) next[c] = corners.next(p, c);
   }
-  std::vector<std::uint32_t> parent(neighbour.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [low, high] = std::minmax({root(parent, a), root(parent, b)});
-    parent[high] = low;
-  };
-  for (std::uint32_t c = 0; c < neighbour.size(); ++c) {
-    if (neighbour[c] == none) continue;
-    join(c, next[neighbour[c]]);
-    join(next[c], neighbour[c]);
+  DisjointSets sets(neighbor.size());
+  for (std::uint32_t c = 0; c < neighbor.size(); ++c) {
+    if (neighbor[c] == none) continue;
+    sets.join(c, next[neighbor[c]]);
+    sets.join(next[c], neighbor[c]);
   }
-  for (std::uint32_t c = 0; c < parent.size(); ++c) parent[c] = root(parent, c);
-  return parent;
+  std::vector<std::uint32_t> first(neighbor.size());
+  for (std::uint32_t c = 0; c < first.size(); ++c) first[c] = sets.root(c);
+  return first;
 }
 
 // Numbers the boundary points of this side of the kept polygons (kept[p] != 0). Two polygons share the points of a
@@ -316,9 +296,9 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
   const OutlineCorners corners = count_corners(outlines);
   const std::vector<std::uint32_t> place = weld(outlines);
   const std::vector<OutlineEdge> edges = sorted_edges(scene, corners, side, kept, place);
-  const std::vector<std::uint32_t> neighbour =
-      smooth_neighbours(outlines, edges, place.size(), AllEdges(outlines, corners, place), side);
-  const std::vector<std::uint32_t> shared = unite(corners, neighbour);
+  const std::vector<std::uint32_t> neighbor =
+      smooth_neighbors(outlines, edges, place.size(), AllEdges(outlines, corners, place), side);
+  const std::vector<std::uint32_t> shared = unite(corners, neighbor);
 
   // 2. The first polygon at a corner or an edge makes the vertices; the others use them, on an edge in reverse order.
   std::vector<std::uint32_t> corner_vertex(place.size(), none);
@@ -335,8 +315,8 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
       ++next_point;
       result.of_polygon[p].push_back(vertex);
       const std::uint32_t parts = outline.parts[c - corners.first[p]];
-      const bool made = neighbour[c] != none && edge_vertex[neighbour[c]] != none;
-      edge_vertex[c] = made ? edge_vertex[neighbour[c]] : size();
+      const bool made = neighbor[c] != none && edge_vertex[neighbor[c]] != none;
+      edge_vertex[c] = made ? edge_vertex[neighbor[c]] : size();
       for (std::uint32_t i = 1; i < parts; ++i, ++next_point) {
         if (!made) result.points.push_back(points[next_point]);
         result.of_polygon[p].push_back(edge_vertex[c] + (made ? parts - 1 - i : i - 1));

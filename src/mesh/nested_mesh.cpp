@@ -1,10 +1,13 @@
 #include "mesh/nested_mesh.h"
 
+#include "mesh/interpolate.h"
 #include "mesh/outline.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <numeric>
@@ -31,44 +34,21 @@ struct CornersComeBefore {
   }
 };
 
-}  // namespace
-
-std::vector<PatchIndex> other_sides(const PatchMesh& mesh) {
-  if (mesh.sheets.empty()) return {};
-  std::vector<PatchIndex> other_side(mesh.size());
-  std::iota(other_side.begin(), other_side.end(), PatchIndex{0});
-  for (const PolygonIndex sheet : mesh.sheets) {
-    std::map<SideCorners, PatchIndex, CornersComeBefore> fronts;
-    const PatchRange front = mesh.patches_on(sheet, Side::front);
-    for (PatchIndex i = front.begin; i < front.end; ++i) fronts.emplace(sorted_corners(mesh.corner_points(i)), i);
-    const PatchRange back = mesh.patches_on(sheet, Side::back);
-    for (PatchIndex j = back.begin; j < back.end; ++j) {
-      const auto found = fronts.find(sorted_corners(mesh.corner_points(j)));
-      if (found == fronts.end()) continue;
-      other_side[j] = found->second;
-      other_side[found->second] = j;
-    }
-  }
-  return other_side;
-}
-
-namespace {
-
 using CornerIndices = std::array<std::uint32_t, 4>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller index first
 
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
 std::vector<Edge> edges_of(const PatchMesh& mesh, PatchIndex patch) {
-  const CornerIndices& corners = mesh.corners[patch];
-  const auto count = static_cast<std::size_t>(mesh.corner_points(patch).count);
+  const std::span<const std::uint32_t> corners = corner_vertices(mesh, patch);
   std::vector<Edge> edges;
-  for (std::size_t k = 0; k < count; ++k) edges.push_back(edge_of(corners[k], corners[(k + 1) % count]));
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    edges.push_back(edge_of(corners[k], corners[(k + 1) % corners.size()]));
   return edges;
 }
 
 struct EdgeHash {
-  // The golden ratio's bits spread neighbouring indices.
+  // The golden ratio's bits spread neighboring indices.
   std::size_t operator()(const Edge& edge) const {
     return ((std::uint64_t{edge.first} << 32 | edge.second) * 0x9e3779b97f4a7c15u) >> 16;
   }
@@ -105,7 +85,7 @@ std::vector<std::uint8_t> on_both_sides(const PatchMesh& mesh, std::span<const s
   return all;
 }
 
-// The marks with those that keep neighbours one level apart.
+// The marks with those that keep neighbors one level apart.
 std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
   std::vector<std::uint8_t> all = on_both_sides(mesh, marked);
   if (mesh.middles.empty()) return all;
@@ -131,6 +111,17 @@ std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::u
   return all;
 }
 
+// A copy of a patch with other corners.
+void add_patch(PatchMesh& to, const PatchMesh& from, PatchIndex patch, const CornerIndices& corners) {
+  to.corners.push_back(corners);
+  to.centroid.push_back(from.centroid[patch]);
+  to.normal.push_back(from.normal[patch]);
+  to.area.push_back(from.area[patch]);
+  to.material.push_back(from.material[patch]);
+  to.polygon.push_back(from.polygon[patch]);
+  to.side.push_back(from.side[patch]);
+}
+
 // A mesh to which patches are added.
 class Cutter {
  public:
@@ -140,17 +131,17 @@ class Cutter {
     result_.mesh.sheets = mesh.sheets;
   }
 
-  void add(const PatchMesh& from, PatchIndex patch, const CornerIndices& corners) {
+  void add_whole(const PatchMesh& from, PatchIndex patch) {
+    add_patch(result_.mesh, from, patch, from.corners[patch]);
+    result_.parent.push_back(patch);
+  }
+
+  void add_part(const PatchMesh& from, PatchIndex patch, const CornerIndices& corners) {
     PatchMesh& mesh = result_.mesh;
-    mesh.corners.push_back(corners);
-    mesh.normal.push_back(from.normal[patch]);
-    mesh.material.push_back(from.material[patch]);
-    mesh.polygon.push_back(from.polygon[patch]);
-    mesh.side.push_back(from.side[patch]);
-    const bool is_whole = corners == from.corners[patch];
-    const PatchCorners points = mesh.corner_points(static_cast<PatchIndex>(mesh.corners.size() - 1));
-    mesh.centroid.push_back(is_whole ? from.centroid[patch] : area_centroid(points));
-    mesh.area.push_back(is_whole ? from.area[patch] : area_vector(points).norm());
+    add_patch(mesh, from, patch, corners);
+    const PatchCorners points = mesh.corner_points(mesh.size() - 1);
+    mesh.centroid.back() = area_centroid(points);
+    mesh.area.back() = area_vector(points).norm();
     result_.parent.push_back(patch);
   }
 
@@ -164,8 +155,8 @@ class Cutter {
     const std::uint32_t cd = middle(c[2], c[3]);
     const std::uint32_t da = middle(c[3], c[0]);
     // The middles of opposite edges bisect each other.
-    const std::uint32_t centre = add_vertex((at(ab) + at(cd)) / 2);
-    return {{{c[0], ab, centre, da}, {ab, c[1], bc, centre}, {centre, bc, c[2], cd}, {da, centre, cd, c[3]}}};
+    const std::uint32_t center = add_vertex((at(ab) + at(cd)) / 2);
+    return {{{c[0], ab, center, da}, {ab, c[1], bc, center}, {center, bc, c[2], cd}, {da, center, cd, c[3]}}};
   }
 
   PatchIndex size() const { return result_.mesh.size(); }
@@ -194,43 +185,9 @@ class Cutter {
   Refinement result_;
 };
 
-}  // namespace
-
-Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
-  assert(marked.size() == mesh.size());
-  const std::vector<std::uint8_t> cut = balanced(mesh, marked);
-  Cutter cutter(mesh);
-  std::size_t slot = 0;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    for (; slot < mesh.first_patch.size() && mesh.first_patch[slot] <= i; ++slot)
-      cutter.first_patch().push_back(cutter.size());
-    if (!cut[i]) {
-      cutter.add(mesh, i, mesh.corners[i]);
-      continue;
-    }
-    for (const CornerIndices& corners : cutter.quarters(mesh.corners[i], mesh.corner_points(i).count == 3))
-      cutter.add(mesh, i, corners);
-  }
-  for (; slot < mesh.first_patch.size(); ++slot) cutter.first_patch().push_back(cutter.size());
-  return cutter.take();
-}
-
-PatchMesh refine(const PatchMesh& mesh) { return refine(mesh, std::vector<std::uint8_t>(mesh.size(), 1)).mesh; }
-
-namespace {
-
-double longest_edge(const PatchMesh& mesh, PatchIndex patch) {
-  const PatchCorners corners = mesh.corner_points(patch);
-  const auto count = static_cast<std::size_t>(corners.count);
-  double longest = 0;
-  for (std::size_t k = 0; k < count; ++k)
-    longest = std::max(longest, (corners.points[(k + 1) % count] - corners.points[k]).norm());
-  return longest;
-}
-
 std::vector<std::uint8_t> large_patches(const PatchMesh& mesh, double usual_edge) {
   std::vector<double> edges;
-  for (PatchIndex i = 0; i < mesh.size(); ++i) edges.push_back(longest_edge(mesh, i));
+  for (PatchIndex i = 0; i < mesh.size(); ++i) edges.push_back(std::sqrt(longest_edge_squared(mesh.corner_points(i))));
   const double longest = edges.empty() ? 0 : std::min(usual_edge, *std::max_element(edges.begin(), edges.end()));
   std::vector<std::uint8_t> large;
   for (const double edge : edges) large.push_back(parts_of_parent(edge, longest) > 1 ? 1 : 0);
@@ -247,21 +204,7 @@ NestedMesh nest(PatchMesh parents, std::span<const std::uint8_t> is_cut) {
   return mesh;
 }
 
-}  // namespace
-
-std::size_t parts_of_parent(double edge, double longest) {
-  constexpr double small = 0.25;  // of the longest: such parents stay whole
-  return edge >= small * longest ? 4 : 1;
-}
-
-NestedMesh nest(PatchMesh parents, double usual_edge) {
-  const std::vector<std::uint8_t> large = large_patches(parents, usual_edge);
-  return nest(std::move(parents), large);
-}
-
-namespace {
-
-// A mesh each patch of which is cut so many times, and others that balance takes.
+// A mesh each patch of which is cut so many times, and others as in refine().
 Refinement refined(const PatchMesh& mesh, std::vector<std::uint8_t> cuts) {
   Refinement result{mesh, std::vector<PatchIndex>(mesh.size())};
   std::iota(result.parent.begin(), result.parent.end(), PatchIndex{0});
@@ -278,7 +221,66 @@ Refinement refined(const PatchMesh& mesh, std::vector<std::uint8_t> cuts) {
   return result;
 }
 
+// The middle of the edge that begins at a corner.
+Point middle(const PatchCorners& patch, int corner) {
+  const auto next = static_cast<std::size_t>((corner + 1) % patch.count);
+  return (patch.points[static_cast<std::size_t>(corner)] + patch.points[next]) / 2;
+}
+
+PatchCorners triangle(const Point& a, const Point& b, const Point& c) { return {{a, b, c, c}, 3}; }
+
+bool is_left_of(const Point& from, const Point& to, const Vector& normal, const Point& point) {
+  return normal.dot((to - from).cross(point - from)) > 0;
+}
+
 }  // namespace
+
+std::vector<PatchIndex> other_sides(const PatchMesh& mesh) {
+  if (mesh.sheets.empty()) return {};
+  std::vector<PatchIndex> other_side(mesh.size());
+  std::iota(other_side.begin(), other_side.end(), PatchIndex{0});
+  for (const PolygonIndex sheet : mesh.sheets) {
+    std::map<SideCorners, PatchIndex, CornersComeBefore> fronts;
+    const PatchRange front = mesh.patches_on(sheet, Side::front);
+    for (PatchIndex i = front.begin; i < front.end; ++i) fronts.emplace(sorted_corners(mesh.corner_points(i)), i);
+    const PatchRange back = mesh.patches_on(sheet, Side::back);
+    for (PatchIndex j = back.begin; j < back.end; ++j) {
+      const auto found = fronts.find(sorted_corners(mesh.corner_points(j)));
+      if (found == fronts.end()) continue;
+      other_side[j] = found->second;
+      other_side[found->second] = j;
+    }
+  }
+  return other_side;
+}
+
+Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
+  assert(marked.size() == mesh.size());
+  const std::vector<std::uint8_t> cut = balanced(mesh, marked);
+  Cutter cutter(mesh);
+  std::size_t slot = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (; slot < mesh.first_patch.size() && mesh.first_patch[slot] <= i; ++slot)
+      cutter.first_patch().push_back(cutter.size());
+    if (!cut[i]) {
+      cutter.add_whole(mesh, i);
+      continue;
+    }
+    for (const CornerIndices& corners : cutter.quarters(mesh.corners[i], mesh.corner_points(i).count == 3))
+      cutter.add_part(mesh, i, corners);
+  }
+  for (; slot < mesh.first_patch.size(); ++slot) cutter.first_patch().push_back(cutter.size());
+  return cutter.take();
+}
+
+PatchMesh refine(const PatchMesh& mesh) { return refine(mesh, std::vector<std::uint8_t>(mesh.size(), 1)).mesh; }
+
+std::size_t parts_of_parent(double edge, double longest) { return edge >= 0.25 * longest ? 4 : 1; }
+
+NestedMesh nest(PatchMesh parents, double usual_edge) {
+  const std::vector<std::uint8_t> large = large_patches(parents, usual_edge);
+  return nest(std::move(parents), large);
+}
 
 PatchIndex number_kept(std::span<const PatchIndex> places) {
   return static_cast<PatchIndex>(places.size() -
@@ -288,8 +290,7 @@ PatchIndex number_kept(std::span<const PatchIndex> places) {
 FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts) {
   assert(cuts.size() == mesh.parents.size());
   const auto patches_before = [&](PatchIndex parent) {
-    const PatchRange range = mesh.patches_of(parent);
-    return range.end - range.begin;
+    return mesh.first_patch[parent + 1] - mesh.first_patch[parent];
   };
 
   // 1. Parents as often as their patches; one that was whole gets parts first.
@@ -300,7 +301,7 @@ FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts
   std::vector<PatchIndex> parts(mesh.parents.size(), 0);
   for (const PatchIndex before : parents.parent) ++parts[before];
 
-  // 2. What was whole stays so until it is cut; then it is a parent as others are.
+  // 2. Whole parents stay so until they are cut; then they are parents as others are.
   std::vector<std::uint8_t> is_cut;
   for (const PatchIndex before : parents.parent)
     is_cut.push_back(parts[before] > 1 || patches_before(before) > 1 || cuts[before] > 0 ? 1 : 0);
@@ -343,6 +344,72 @@ Field of_parents(const NestedMesh& mesh, const FieldView& parent_values) {
   Field values(mesh.patches.size(), parent_values.cols());
   for (PatchIndex i = 0; i < mesh.patches.size(); ++i) values.row(i) = parent_values.row(mesh.parent[i]);
   return values;
+}
+
+double mean_area(std::span<const double> areas) {
+  return std::accumulate(areas.begin(), areas.end(), 0.0) / static_cast<double>(areas.size());
+}
+
+double mean_area(const PatchMesh& mesh) { return mean_area(std::span<const double>(mesh.area)); }
+
+double small_area(const PatchMesh& mesh) { return mean_area(mesh) / 16; }
+
+PatchMesh without_patches(const PatchMesh& mesh, std::span<const std::uint8_t> is_left_out) {
+  assert(is_left_out.size() == mesh.size() && mesh.middles.empty());
+  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (is_left_out[i]) continue;
+    for (const std::uint32_t vertex : mesh.corners[i]) is_used[vertex] = 1;
+  }
+  PatchMesh kept;
+  kept.sheets = mesh.sheets;
+  std::vector<std::uint32_t> number;  // per vertex, among those that are kept
+  for (std::size_t v = 0; v < is_used.size(); ++v) {
+    number.push_back(static_cast<std::uint32_t>(kept.vertices.size()));
+    if (is_used[v]) kept.vertices.push_back(mesh.vertices[v]);
+  }
+  std::size_t slot = 0;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (; mesh.first_patch[slot] <= i; ++slot) kept.first_patch.push_back(kept.size());
+    if (is_left_out[i]) continue;
+    CornerIndices corners = mesh.corners[i];
+    for (std::uint32_t& corner : corners) corner = number[corner];
+    add_patch(kept, mesh, i, corners);
+  }
+  for (; slot < mesh.first_patch.size(); ++slot) kept.first_patch.push_back(kept.size());
+  return kept;
+}
+
+PatchCorners quarter_of(const PatchCorners& patch, int quarter) {
+  const auto& c = patch.points;
+  const Point ab = middle(patch, 0), bc = middle(patch, 1);
+  if (patch.count == 3) {
+    const Point ca = middle(patch, 2);
+    if (quarter == 0) return triangle(c[0], ab, ca);
+    if (quarter == 1) return triangle(ab, c[1], bc);
+    return quarter == 2 ? triangle(ca, bc, c[2]) : triangle(ab, bc, ca);
+  }
+  const Point cd = middle(patch, 2), da = middle(patch, 3);
+  const Point center = (ab + cd) / 2;
+  if (quarter == 0) return {{c[0], ab, center, da}, 4};
+  if (quarter == 1) return {{ab, c[1], bc, center}, 4};
+  return quarter == 2 ? PatchCorners{{center, bc, c[2], cd}, 4} : PatchCorners{{da, center, cd, c[3]}, 4};
+}
+
+int quarter_at(const PatchCorners& patch, const Vector& normal, const Point& point) {
+  const Point ab = middle(patch, 0), bc = middle(patch, 1);
+  if (patch.count == 3) {
+    const Point ca = middle(patch, 2);
+    if (is_left_of(ca, ab, normal, point) == is_left_of(ca, ab, normal, patch.points[0])) return 0;
+    if (is_left_of(ab, bc, normal, point) == is_left_of(ab, bc, normal, patch.points[1])) return 1;
+    return is_left_of(bc, ca, normal, point) == is_left_of(bc, ca, normal, patch.points[2]) ? 2 : 3;
+  }
+  // The line through the middles of the second and the last edge divides the corners 0 and 1 from 2 and 3.
+  const Point cd = middle(patch, 2), da = middle(patch, 3);
+  const bool near_first_edge = is_left_of(bc, da, normal, point) == is_left_of(bc, da, normal, patch.points[0]);
+  const bool near_last_edge = is_left_of(ab, cd, normal, point) == is_left_of(ab, cd, normal, patch.points[0]);
+  if (near_first_edge) return near_last_edge ? 0 : 1;
+  return near_last_edge ? 3 : 2;
 }
 
 }  // namespace patchlight

@@ -4,6 +4,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,11 +23,9 @@ struct Refinement {
   std::vector<PatchIndex> parent;  ///< per patch: the patch of the mesh before that it is or lies in
 };
 
-/// Cuts the marked patches into four by the middles of their edges, and besides them those that would otherwise have a
-/// neighbour a quarter of whose edge is shared: neighbours differ by one level at most. Of sheets both sides are cut
-/// alike. The four parts of a patch
-/// follow each other in its place; neighbours that share an edge share its middle. `marked` has an entry for each
-/// patch.
+/// Cuts the marked patches into four by the middles of their edges, and others so that neighbors differ by one level at
+/// most. Both sides of sheets are cut alike. The four parts of a patch follow each other in its place; neighbors that
+/// share an edge share its middle. `marked` has an entry for each patch.
 Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked);
 
 /// Cuts every patch: patch i becomes the patches 4 i to 4 i + 3.
@@ -62,8 +61,8 @@ struct FinerMesh {
 /// How many patches of the mesh before those places are.
 PatchIndex number_kept(std::span<const PatchIndex> places);
 
-/// The same with finer patches: those of each parent are cut so many times, and with them those that balance takes, see
-/// refine(). A parent that was whole has parts after the first time.
+/// The same with finer patches: those of each parent are cut so many times, and others as in refine(). A parent that
+/// was whole has parts after the first time.
 FinerMesh cut_patches(const NestedMesh& mesh, std::span<const std::uint8_t> cuts_of_parents);
 
 /// The same where parents are marked: their patches are cut once, and a parent that was whole is cut into four that
@@ -78,5 +77,35 @@ Field means_by_parent(const NestedMesh& mesh, const FieldView& values, const Eig
 
 /// Each patch's value is that of its parent.
 Field of_parents(const NestedMesh& mesh, const FieldView& parent_values);
+
+/// The square of the longest edge of a patch, m^2.
+inline double longest_edge_squared(const PatchCorners& corners) {
+  const auto count = static_cast<std::size_t>(corners.count);
+  double longest = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    longest = std::max(longest, (corners.points[(k + 1) % count] - corners.points[k]).squaredNorm());
+  return longest;
+}
+
+/// The mean of areas, m^2.
+double mean_area(std::span<const double> areas);
+
+/// The mean area of the patches, m^2.
+double mean_area(const PatchMesh& mesh);
+
+/// The area in m^2 below which a patch is small: a sixteenth of the mean. In models with fine parts most patches are,
+/// and have together some thousandths of all area, so that less work on each of them saves much and costs little.
+double small_area(const PatchMesh& mesh);
+
+/// The mesh without the patches for which `is_left_out` is not 0; it has an entry for each patch. Patches and vertices
+/// stay in order; vertices that no patch has any more go as well.
+PatchMesh without_patches(const PatchMesh& mesh, std::span<const std::uint8_t> is_left_out);
+
+/// Part 0 to 3 of a patch that is cut by the middles of its edges, in the order of refine().
+PatchCorners quarter_of(const PatchCorners& patch, int quarter);
+
+/// The quarter of a patch, a convex one with this normal, that contains a point of its plane; of points on a cut, or
+/// slightly outside of the patch, one of those beside them.
+int quarter_at(const PatchCorners& patch, const Vector& normal, const Point& point);
 
 }  // namespace patchlight

@@ -1,5 +1,7 @@
 #include "mesh/noded_lines.h"
 
+#include "base/disjoint_sets.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -13,14 +15,13 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace patchlight {
 namespace {
 
-// Of these, what comes nearer than `margin` to the line at y or crosses it.
+// The lines that come nearer than `margin` to the line at y or cross it.
 std::vector<FlatLine> near_row(std::span<const FlatLine> lines, double y, double margin) {
   std::vector<FlatLine> near;
   for (const auto& [from, to] : lines) {
@@ -30,60 +31,10 @@ std::vector<FlatLine> near_row(std::span<const FlatLine> lines, double y, double
   return near;
 }
 
-std::vector<FlatLine> edges_of(std::span<const FlatPoint> polygon) {
-  std::vector<FlatLine> edges;
-  for (std::size_t k = 0; k < polygon.size(); ++k) edges.push_back({polygon[k], polygon[(k + 1) % polygon.size()]});
-  return edges;
+bool is_near(const FlatPoint& point, std::span<const FlatLine> lines, double margin) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const FlatLine& line) { return to_line(point, line).squaredNorm() < margin * margin; });
 }
-
-bool is_near(const FlatPoint& point, const FlatLine& line, double margin) {
-  const auto& [from, to] = line;
-  const FlatPoint edge = to - from;
-  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-  return (from + t * edge - point).squaredNorm() < margin * margin;
-}
-
-// Does a ray along x cross the edges an odd number of times, and is none of them near?
-bool is_well_inside(const FlatPoint& point, std::span<const FlatLine> edges, double margin) {
-  bool inside = false;
-  for (const FlatLine& line : edges) {
-    if (is_near(point, line, margin)) return false;
-    const auto& [from, to] = line;
-    const FlatPoint edge = to - from;
-    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
-    if (from.x() + (point.y() - from.y()) / edge.y() * edge.x() > point.x()) inside = !inside;
-  }
-  return inside;
-}
-
-}  // namespace
-
-std::vector<std::vector<FlatPoint>> lattice_rows(std::span<const FlatPoint> polygon, std::span<const FlatLine> lines,
-                                                 double spacing, double margin) {
-  const std::vector<FlatLine> outline = edges_of(polygon);
-  Eigen::AlignedBox2d bounds;
-  for (const FlatPoint& corner : polygon) bounds.extend(corner);
-  const double height = std::sqrt(0.75) * spacing;
-  std::vector<std::vector<FlatPoint>> rows;
-  for (double row = std::ceil(bounds.min().y() / height); row * height < bounds.max().y(); ++row) {
-    const double y = row * height;
-    const double shift = std::fmod(row, 2) == 0 ? 0 : 0.5;  // every other row stands in the gaps of the last
-    const std::vector<FlatLine> edges = near_row(outline, y, margin);
-    const std::vector<FlatLine> inner = near_row(lines, y, margin);
-    const auto is_clear = [&](const FlatPoint& point) {
-      return std::none_of(inner.begin(), inner.end(), [&](const auto& line) { return is_near(point, line, margin); });
-    };
-    std::vector<FlatPoint> points;
-    for (double k = std::ceil(bounds.min().x() / spacing); (k + shift) * spacing < bounds.max().x(); ++k) {
-      const FlatPoint point((k + shift) * spacing, y);
-      if (is_well_inside(point, edges, margin) && is_clear(point)) points.push_back(point);
-    }
-    if (!points.empty()) rows.push_back(std::move(points));
-  }
-  return rows;
-}
-
-namespace {
 
 // A part of a line between two places of a grid.
 struct PartOnGrid {
@@ -95,13 +46,12 @@ namespace polygon = boost::polygon;
 using GridPlace = polygon::point_data<int>;
 using GridSegment = polygon::segment_data<int>;
 
-constexpr double farthest = 5e8;  // so that the product of two differences fits into 64 bits
-
 GridPlace place_of(const FlatPoint& point, double width) {
   return {static_cast<int>(std::lround(point.x() / width)), static_cast<int>(std::lround(point.y() / width))};
 }
 
-bool is_too_far(const FlatPoint& point, double width) { return !(point.cwiseAbs().maxCoeff() <= farthest * width); }
+// So that the product of two differences fits into 64 bits.
+bool is_too_far(const FlatPoint& point, double width) { return !(point.cwiseAbs().maxCoeff() <= 5e8 * width); }
 
 // The coordinates of its ends, that which comes first first.
 std::array<int, 4> ends_of(const GridSegment& segment) {
@@ -181,7 +131,11 @@ std::vector<FlatPoint> points_of(const Geos& geos, const GEOSGeometry* string) {
   return points;
 }
 
-bool has_order(const FlatPoint& a, const FlatPoint& b) { return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y()); }
+using GridPoint = std::array<double, 2>;
+
+GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
+
+bool has_order(const FlatPoint& a, const FlatPoint& b) { return grid_key(a) < grid_key(b); }
 
 std::vector<FlatLine> in_order(std::vector<FlatLine> lines) {
   for (auto& [from, to] : lines) {
@@ -215,33 +169,22 @@ std::vector<FlatLine> lines_of(std::span<const std::vector<FlatPoint>> strings) 
 
 // Without those that are, with all that hang together with them, smaller than that.
 std::vector<std::vector<FlatPoint>> large_ones(std::vector<std::vector<FlatPoint>> strings, double least_size) {
-  std::map<std::array<double, 2>, std::size_t> first_at;
-  std::vector<std::size_t> part(strings.size());
-  const auto root = [&](std::size_t k) {
-    while (part[k] != k) k = part[k] = part[part[k]];
-    return k;
-  };
-  for (std::size_t k = 0; k < strings.size(); ++k) {
-    part[k] = k;
+  std::map<GridPoint, std::uint32_t> first_at;
+  DisjointSets parts(strings.size());
+  for (std::uint32_t k = 0; k < strings.size(); ++k) {
     for (const FlatPoint& end : {strings[k].front(), strings[k].back()})
-      part[root(k)] = root(first_at.try_emplace({end.x(), end.y()}, k).first->second);
+      parts.join(k, first_at.try_emplace(grid_key(end), k).first->second);
   }
   std::vector<Eigen::AlignedBox2d> boxes(strings.size());
-  for (std::size_t k = 0; k < strings.size(); ++k) {
-    for (const FlatPoint& point : strings[k]) boxes[root(k)].extend(point);
+  for (std::uint32_t k = 0; k < strings.size(); ++k) {
+    for (const FlatPoint& point : strings[k]) boxes[parts.root(k)].extend(point);
   }
   std::vector<std::vector<FlatPoint>> large;
-  for (std::size_t k = 0; k < strings.size(); ++k) {
-    if (boxes[root(k)].diagonal().norm() >= least_size) large.push_back(std::move(strings[k]));
+  for (std::uint32_t k = 0; k < strings.size(); ++k) {
+    if (boxes[parts.root(k)].diagonal().norm() >= least_size) large.push_back(std::move(strings[k]));
   }
   return large;
 }
-
-double wedge(const FlatPoint& a, const FlatPoint& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-using GridPoint = std::array<double, 2>;
-
-GridPoint grid_key(const FlatPoint& point) { return {point.x(), point.y()}; }
 
 // Lines on a grid: their parts, each once, and which lines go through each place where parts end.
 struct GridLines {
@@ -266,7 +209,6 @@ GridLines on_grid(std::span<const FlatLine> lines, double grid) {
 // Nowhere else is there anything to be cut: what is found there are lines that lie on each other but for rounding.
 std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std::vector<std::size_t>& through,
                                      const FlatPoint& point, double near) {
-  constexpr double least_sine = 0.01;
   const FlatPoint* end = nullptr;
   for (const std::size_t k : through) {
     for (const FlatPoint& one : lines[k]) {
@@ -275,8 +217,8 @@ std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std:
     }
   }
   if (end != nullptr) return *end;
-  // Of the two that cross at the widest angle.
-  double widest = least_sine;
+  // Of the two that cross at the widest angle; its sine is above 0.01.
+  double widest = 0.01;
   std::optional<FlatPoint> crossing;
   for (const std::size_t one : through) {
     const auto& [from, to] = lines[one];
@@ -347,17 +289,10 @@ FlatShape joined(const Geos& geos, const FlatShape& lines) {
   return {lines ? GEOSLineMerge_r(geos, lines.get()) : nullptr, {geos}};
 }
 
-double distance_from(const FlatLine& line, const FlatPoint& point) {
-  const auto& [from, to] = line;
-  const double t = std::clamp((point - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
-  return (from + t * (to - from) - point).norm();
-}
-
-// The edges at a distance to the left of those of a string, negative to the right. They meet in mitres, those of acute
-// corners cut short. What would run backwards, where the string bends within the distance, is left out.
+// The edges at a distance to the left of those of a string, negative to the right. They meet in miters, which reach no
+// farther than twice the distance. Edges that would run backward, where the string bends within the distance, are left
+// out.
 std::vector<FlatLine> edges_beside(const std::vector<FlatPoint>& string, double distance) {
-  constexpr double longest_mitre = 2;
-  constexpr double nothing = 1e-6;
   const std::size_t n = string.size() - 1;
   const bool is_ring = string.front() == string.back();
   const auto along = [&](std::size_t edge) -> FlatPoint { return (string[edge + 1] - string[edge]).normalized(); };
@@ -368,8 +303,8 @@ std::vector<FlatLine> edges_beside(const std::vector<FlatPoint>& string, double 
     const FlatPoint after = left(along(is_end ? std::min(k, n - 1) : k % n));
     const FlatPoint before = is_end ? after : left(along((k + n - 1) % n));
     const FlatPoint middle = before + after;
-    const double length = std::max(middle.norm(), nothing);  // twice the cosine of half the bend
-    places.push_back(string[k] + distance * std::min(2 / length, longest_mitre) / length * middle);
+    const double length = std::max(middle.norm(), 1e-6);  // twice the cosine of half the bend
+    places.push_back(string[k] + distance * std::min(2 / length, 2.0) / length * middle);
   }
   std::vector<FlatLine> edges;
   for (std::size_t k = 0; k < n; ++k)
@@ -378,6 +313,50 @@ std::vector<FlatLine> edges_beside(const std::vector<FlatPoint>& string, double 
 }
 
 }  // namespace
+
+FlatPoint to_line(const FlatPoint& point, const FlatLine& line) {
+  const auto& [from, to] = line;
+  const double t = std::clamp((point - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+  return from + t * (to - from) - point;
+}
+
+std::vector<FlatLine> edges_of(std::span<const FlatPoint> polygon) {
+  std::vector<FlatLine> edges;
+  for (std::size_t k = 0; k < polygon.size(); ++k) edges.push_back({polygon[k], polygon[(k + 1) % polygon.size()]});
+  return edges;
+}
+
+bool is_inside(const FlatPoint& point, std::span<const FlatLine> edges) {
+  bool inside = false;
+  for (const auto& [from, to] : edges) {
+    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
+    if (from.x() + (point.y() - from.y()) / (to.y() - from.y()) * (to.x() - from.x()) > point.x()) inside = !inside;
+  }
+  return inside;
+}
+
+std::vector<std::vector<FlatPoint>> lattice_rows(std::span<const FlatPoint> polygon, std::span<const FlatLine> lines,
+                                                 double spacing, double margin) {
+  const std::vector<FlatLine> outline = edges_of(polygon);
+  Eigen::AlignedBox2d bounds;
+  for (const FlatPoint& corner : polygon) bounds.extend(corner);
+  const double height = std::sqrt(0.75) * spacing;
+  std::vector<std::vector<FlatPoint>> rows;
+  for (double row = std::ceil(bounds.min().y() / height); row * height < bounds.max().y(); ++row) {
+    const double y = row * height;
+    const double shift = std::fmod(row, 2) == 0 ? 0 : 0.5;  // every other row stands in the gaps of the last
+    const std::vector<FlatLine> edges = near_row(outline, y, margin);
+    const std::vector<FlatLine> inner = near_row(lines, y, margin);
+    std::vector<FlatPoint> points;
+    for (double k = std::ceil(bounds.min().x() / spacing); (k + shift) * spacing < bounds.max().x(); ++k) {
+      const FlatPoint point((k + shift) * spacing, y);
+      if (!is_near(point, edges, margin) && is_inside(point, edges) && !is_near(point, inner, margin))
+        points.push_back(point);
+    }
+    if (!points.empty()) rows.push_back(std::move(points));
+  }
+  return rows;
+}
 
 std::vector<FlatLine> noded_lines(std::span<const FlatLine> lines, double grid) {
   const GridLines on = on_grid(lines, grid);
@@ -409,7 +388,7 @@ std::vector<FlatLine> lines_beside(std::span<const FlatLine> lines, double grid,
   std::erase_if(parts, [&](const FlatLine& part) {
     const FlatPoint middle = (part[0] + part[1]) / 2;
     return std::any_of(lines.begin(), lines.end(),
-                       [&](const FlatLine& line) { return distance_from(line, middle) < distance - 2 * grid; });
+                       [&](const FlatLine& line) { return to_line(middle, line).norm() < distance - 2 * grid; });
   });
   return parts;
 }

@@ -12,6 +12,18 @@ using FlatPoint = Eigen::Vector2d;
 /// A line between two points of a plane.
 using FlatLine = std::array<FlatPoint, 2>;
 
+/// Twice the area of the triangle from the origin to both points, positive when it turns left.
+inline double wedge(const FlatPoint& a, const FlatPoint& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// From a point to the nearest one of a line.
+FlatPoint to_line(const FlatPoint& point, const FlatLine& line);
+
+/// The edges of a polygon; the first begins at its first corner.
+std::vector<FlatLine> edges_of(std::span<const FlatPoint> polygon);
+
+/// True when a ray along x from the point crosses an odd number of these edges. A seam counts twice.
+bool is_inside(const FlatPoint& point, std::span<const FlatLine> edges);
+
 /// The points of an equilateral lattice that lie in a polygon of the plane, not nearer than `margin` to its edges and
 /// to lines inside it. One row along x at a time; the lattice contains the origin.
 std::vector<std::vector<FlatPoint>> lattice_rows(std::span<const FlatPoint> polygon, std::span<const FlatLine> lines,

@@ -1,5 +1,6 @@
 #include "mesh/outline.h"
 
+#include "base/tolerances.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
 
@@ -20,8 +21,7 @@ bool comes_before(const Point& a, const Point& b) {
 
 std::uint32_t parts_of(const Point& from, const Point& to, double max_edge) {
   // An edge of n max_edge has n parts, whatever the rounding of its length.
-  constexpr double rounding = 1e-9;
-  return static_cast<std::uint32_t>(std::max(1.0, std::ceil((to - from).norm() / max_edge - rounding)));
+  return static_cast<std::uint32_t>(std::max(1.0, std::ceil((to - from).norm() / max_edge - tolerance_of_shapes)));
 }
 
 Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge) {
@@ -77,11 +77,7 @@ std::vector<Point> boundary_points(const Outline& outline) {
 
 namespace {
 
-constexpr std::size_t few_corners = 24;
-constexpr double most_turn_at_corner = std::numbers::pi / 12;
-constexpr double most_turn_of_chord = std::numbers::pi / 6;
-
-// A corner of one of the outlines with many of them, and where its neighbours are.
+// A corner of one of the outlines with many of them, and where its neighbors are.
 struct Occurrence {
   Point at, before, after;
   PolygonIndex polygon;
@@ -128,14 +124,14 @@ std::vector<std::uint8_t> met_by_others(const Scene& scene, const std::vector<st
   return met;
 }
 
-// Do the faces that have a corner at one place all go through it between the same neighbours?
+// Do the faces that have a corner at one place all go through it between the same neighbors?
 bool is_on_one_run(std::span<const Occurrence> here) {
   if (here.size() > 2) return false;
   const Occurrence& a = here.front();
   const Occurrence& b = here.back();
   if (here.size() == 2 && a.polygon == b.polygon) return false;
   const bool same = (a.before == b.before && a.after == b.after) || (a.before == b.after && a.after == b.before);
-  return same && turn_at(a.before, a.at, a.after) <= most_turn_at_corner;
+  return same && turn_at(a.before, a.at, a.after) <= std::numbers::pi / 12;
 }
 
 double width_of(const Scene& scene, PolygonIndex polygon) {
@@ -172,7 +168,7 @@ Run::Run(std::vector<Point> points, double tolerance)
 
 // Is no corner between the two farther from their chord than the tolerance, and does it turn little?
 bool Run::fits(std::size_t from, std::size_t to) const {
-  if (turned_[to - 1] - turned_[from] > most_turn_of_chord) return false;
+  if (turned_[to - 1] - turned_[from] > std::numbers::pi / 6) return false;
   const Vector chord = points_[to] - points_[from];
   const double length = chord.norm();
   if (!(length > 0)) return false;
@@ -219,10 +215,9 @@ Vector Run::lost_area(std::size_t from, std::size_t to) const {
 }
 
 std::vector<Point> Run::coarse() const {
-  constexpr double rounding = 1e-12;
   std::vector<std::size_t> ends = kept();
   const Vector whole = lost_area(0, last());
-  const bool straight = whole.norm() <= rounding * (points_.back() - points_.front()).squaredNorm();
+  const bool straight = whole.norm() <= tolerance_of_arithmetic * (points_.back() - points_.front()).squaredNorm();
   if (ends.size() == 2 && !straight) ends = evenly(2);  // one is there to be moved
   if (ends.empty() || ends.size() == points_.size()) return points_;
 
@@ -275,7 +270,7 @@ std::vector<Point> outline_corners(const Scene& scene, PolygonIndex polygon) {
 
 LooseCorners find_loose_corners(const Scene& scene) {
   std::vector<std::uint8_t> has_many(scene.polygons.size(), 0);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) has_many[p] = scene.polygons[p].corners.size() > few_corners;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) has_many[p] = scene.polygons[p].corners.size() > 24;
   const std::vector<Occurrence> all = occurrences_in(scene, has_many);
   if (all.empty()) return {};
   const std::vector<std::uint8_t> met = met_by_others(scene, has_many, all);

@@ -6,13 +6,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 namespace patchlight {
 
 /// Polygons whose normals are nearer to each other than 30 degrees go on over a common edge: its cosine.
-inline constexpr double smooth_cosine = 0.86602540378443865;
+inline constexpr double smooth_cosine = std::numbers::sqrt3 / 2;
 
 /// A polygon's boundary as the mesher sees it.
 struct Outline {
@@ -64,7 +65,7 @@ Point edge_point(const Point& from, const Point& to, std::uint32_t index, std::u
 /// All boundary points in the order of PolygonMesh.
 std::vector<Point> boundary_points(const Outline& outline);
 
-/// The longest edge of the patches of each polygon, metres.
+/// The longest edge of the patches of each polygon, meters.
 struct PatchEdges {
   double max_edge = 0;
   std::vector<double> coarsest = {};  ///< per polygon: a longer edge that its patches may have; empty: none
@@ -81,7 +82,7 @@ inline constexpr double outline_tolerance = 0.01;
 
 /// Whether patches could do without a corner.
 struct LooseCorner {
-  double width = 0;       ///< 4 area / perimeter of the narrowest face that has it, in metres; 0: the corner is kept
+  double width = 0;       ///< 4 area / perimeter of the narrowest face that has it, in meters; 0: the corner is kept
   bool reversed = false;  ///< the first face that has it goes through it the other way
 };
 
@@ -93,7 +94,7 @@ using LooseCorners = std::vector<std::vector<LooseCorner>>;
 std::vector<Point> outline_corners(const Scene& scene, PolygonIndex polygon);
 
 /// Loose are the corners of outlines with over 24 of them where the outline turns by at most 15 degrees and that one
-/// face alone has, or two faces between the same neighbours. Positions are compared bit by bit. O(n log n).
+/// face alone has, or two faces between the same neighbors. Positions are compared bit by bit. O(n log n).
 LooseCorners find_loose_corners(const Scene& scene);
 
 /// The corners that the patches of a polygon follow. Between two corners that are kept a run of loose ones, whose edges

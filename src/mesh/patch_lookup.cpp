@@ -1,5 +1,7 @@
 #include "mesh/patch_lookup.h"
 
+#include "base/tolerances.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,58 +12,42 @@
 namespace patchlight {
 namespace {
 
-// The patches of a lattice are at their places up to this share of their edges.
-constexpr double lattice_tolerance = 1e-6;
-
 // Do the corners of a parallelogram lie at -1/2 and 1/2 along both directions, counted from its centroid?
 bool is_cell(const PatchMesh& mesh, PatchIndex patch, const Vector& to_u, const Vector& to_v) {
   const PatchCorners corners = mesh.corner_points(patch);
   return corners.count == 4 && std::all_of(corners.points.begin(), corners.points.end(), [&](const Point& corner) {
            const Vector from = corner - mesh.centroid[patch];
-           return std::abs(std::abs(from.dot(to_u)) - 0.5) <= lattice_tolerance &&
-                  std::abs(std::abs(from.dot(to_v)) - 0.5) <= lattice_tolerance;
+           return std::abs(std::abs(from.dot(to_u)) - 0.5) <= tolerance_of_coordinates &&
+                  std::abs(std::abs(from.dot(to_v)) - 0.5) <= tolerance_of_coordinates;
          });
 }
 
 // Points this share of the polygon side's extent outside of a patch still find it.
 constexpr double lookup_slack = 4e-6;
 
-using Flat = Eigen::Vector2d;
+FlatPoint flat(const auto& grid, const Point& point) { return {point[grid.axis_u], point[grid.axis_v]}; }
 
-double cross(const Flat& a, const Flat& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double distance_to_edge(const Flat& point, const Flat& from, const Flat& to) {
-  const Flat edge = to - from;
-  const double t = std::clamp((point - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-  return (from + t * edge - point).norm();
-}
-
-Flat flat(const auto& grid, const Point& point) { return {point[grid.axis_u], point[grid.axis_v]}; }
-
-struct FlatEdge {
-  Flat from, to;
-};
-
-FlatEdge edge(const auto& outline, std::size_t k) {
+FlatLine edge(const auto& outline, std::size_t k) {
   const std::size_t next = (k + 1) % 4;
-  return {Flat(outline.u[k], outline.v[k]), Flat(outline.u[next], outline.v[next])};
+  return {FlatPoint(outline.u[k], outline.v[k]), FlatPoint(outline.u[next], outline.v[next])};
 }
 
-// The patch is convex and counter-clockwise in the flat coordinates; an edge without length bounds nothing.
-bool holds(const auto& outline, const Flat& eye) {
+// Does a point lie beyond an edge of a counter-clockwise outline? An edge without length bounds nothing.
+bool is_beyond(const FlatLine& edge, const FlatPoint& point) { return wedge(edge[1] - edge[0], point - edge[0]) < 0; }
+
+// The patch is convex and counter-clockwise in the flat coordinates.
+bool holds(const auto& outline, const FlatPoint& eye) {
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto [from, to] = edge(outline, k);
-    if (cross(to - from, eye - from) < 0) return false;
+    if (is_beyond(edge(outline, k), eye)) return false;
   }
   return true;
 }
 
 // From outside: to the nearest of the edges beyond which the point lies. Zero inside.
-double distance_to(const auto& outline, const Flat& eye) {
+double distance_to(const auto& outline, const FlatPoint& eye) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto [from, to] = edge(outline, k);
-    if (cross(to - from, eye - from) < 0) nearest = std::min(nearest, distance_to_edge(eye, from, to));
+    if (is_beyond(edge(outline, k), eye)) nearest = std::min(nearest, to_line(eye, edge(outline, k)).norm());
   }
   return std::isfinite(nearest) ? nearest : 0;
 }
@@ -72,7 +58,7 @@ struct Cell {
 
 // The cell at a point; the closest one for a point outside.
 Cell cell_at(const auto& grid, const Point& point) {
-  const Flat at = flat(grid, point);
+  const FlatPoint at = flat(grid, point);
   const double u = (at.x() - grid.lower_u) * grid.cells_per_u;
   const double v = (at.y() - grid.lower_v) * grid.cells_per_v;
   return {static_cast<int>(std::clamp(u, 0.0, grid.count_u - 1.0)),
@@ -126,7 +112,7 @@ std::optional<PatchLattice> lattice_of(const PatchMesh& mesh, PatchRange range) 
   const Point& first = mesh.centroid[range.begin];
   const Vector u = mesh.centroid[range.begin + 1] - first;
   const auto is_at = [&](PatchIndex k, const Point& place) {
-    return (mesh.centroid[range.begin + k] - place).norm() <= lattice_tolerance * u.norm();
+    return (mesh.centroid[range.begin + k] - place).norm() <= tolerance_of_coordinates * u.norm();
   };
   PatchIndex row = 1;
   while (row < count && is_at(row, first + row * u)) ++row;
@@ -171,14 +157,14 @@ PatchLookup::Outline PatchLookup::outline_of(const Grid& grid, PatchIndex patch)
   const PatchCorners corners = mesh_.corner_points(patch);
   Outline outline{};
   for (std::size_t k = 0; k < 4; ++k) {
-    const Flat at = flat(grid, corners.points[k]);
+    const FlatPoint at = flat(grid, corners.points[k]);
     outline.u[k] = at.x();
     outline.v[k] = at.y();
   }
   return outline;
 }
 
-PatchLookup::CellPatches PatchLookup::with_middle(CellPatches cell, const Grid& grid, const Flat& middle) {
+PatchLookup::CellPatches PatchLookup::with_middle(CellPatches cell, const Grid& grid, const FlatPoint& middle) {
   for (const PatchIndex patch : grid.patches_of(cell)) {
     const Outline& outline = grid.outline(patch);
     if (!holds(outline, middle)) continue;
@@ -200,7 +186,7 @@ LargeArray<PatchLookup::CellPatches> PatchLookup::cells_of(const Grid& grid, std
   for (int v = 0; v < grid.count_v; ++v) {
     for (int u = 0; u < grid.count_u; ++u) {
       const CellPatches cell{.begin = begin[cells.size()], .end = begin[cells.size() + 1]};
-      const Flat middle(grid.lower_u + (u + 0.5) / grid.cells_per_u, grid.lower_v + (v + 0.5) / grid.cells_per_v);
+      const FlatPoint middle(grid.lower_u + (u + 0.5) / grid.cells_per_u, grid.lower_v + (v + 0.5) / grid.cells_per_v);
       cells.push_back(with_middle(cell, grid, middle));
     }
   }
@@ -245,16 +231,15 @@ PatchLookup::Grid PatchLookup::make_grid(PatchRange range) const {
 
 // Is a point inside of the patch at the middle of its cell by more than the corners are rounded, each by 6e-8 of
 // `size`? A cross product is off by less than 4e-7 size (size + |x| + |y|) then.
-bool PatchLookup::surely_holds(const CellPatches& cell, const Flat& point) {
-  constexpr double rounding = 4e-7;
+bool PatchLookup::surely_holds(const CellPatches& cell, const FlatPoint& point) {
   if (!(cell.size > 0)) return false;
-  const Flat eye(point.x() - cell.u, point.y() - cell.v);
+  const FlatPoint eye(point.x() - cell.u, point.y() - cell.v);
   const double size = cell.size;
-  const double least = rounding * size * (size + eye.lpNorm<1>());
-  Flat from(0, 0);
+  const double least = 4e-7 * size * (size + eye.lpNorm<1>());
+  FlatPoint from(0, 0);
   for (std::size_t k = 0; k < 4; ++k) {
-    const Flat to = k < 3 ? Flat(cell.to_u[k], cell.to_v[k]) : Flat(0, 0);
-    if (to != from && !(cross(to - from, eye - from) > least)) return false;
+    const FlatPoint to = k < 3 ? FlatPoint(cell.to_u[k], cell.to_v[k]) : FlatPoint(0, 0);
+    if (to != from && !(wedge(to - from, eye - from) > least)) return false;
     from = to;
   }
   return true;
@@ -262,7 +247,7 @@ bool PatchLookup::surely_holds(const CellPatches& cell, const Flat& point) {
 
 PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
   // 1. The first patch of the point's cell that holds it.
-  const Flat eye = flat(grid, point);
+  const FlatPoint eye = flat(grid, point);
   const Cell home = cell_at(grid, point);
   const CellPatches& at_home = grid.cells[cell_index(grid, home)];
   if (surely_holds(at_home, eye)) return at_home.middle;
@@ -292,7 +277,7 @@ PatchIndex PatchLookup::patch_in(const Grid& grid, const Point& point) {
 }
 
 const PatchLookup::Grid& PatchLookup::grid_on(PolygonIndex polygon, Side side) const {
-  return grids_[grid_of_[2 * static_cast<std::size_t>(polygon) + static_cast<std::size_t>(side)]];
+  return grids_[grid_of_[side_slot(polygon, side)]];
 }
 
 std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side, const Point& point) const {
@@ -303,7 +288,7 @@ std::optional<PatchIndex> PatchLookup::patch_at(PolygonIndex polygon, Side side,
   return grid.lattice ? range.begin + grid.lattice->patch_at(point) : patch_in(grid, point);
 }
 
-// Fills in the patches that are searched for. What is read next is on its way from memory before it is needed.
+// Fills in the patches that are searched for. Memory is requested before it is needed.
 std::vector<PatchIndex> PatchLookup::with_searched(std::vector<PatchIndex> patches, std::span<const Searched> searched,
                                                    std::span<const SidePoint> points) {
   // 1. Those at the middles of their cells.
@@ -325,12 +310,9 @@ std::vector<PatchIndex> PatchLookup::with_searched(std::vector<PatchIndex> patch
 }
 
 std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> points) const {
-  const auto slot_of = [](const SidePoint& at) {
-    return 2 * static_cast<std::size_t>(at.polygon) + static_cast<std::size_t>(at.side);
-  };
-  for (const SidePoint& at : points) __builtin_prefetch(&mesh_.first_patch[slot_of(at)]);
-  for (const SidePoint& at : points) __builtin_prefetch(&grid_of_[slot_of(at)]);
-  // 1. What needs no search in a cell; of the others the cell.
+  for (const SidePoint& at : points) __builtin_prefetch(&mesh_.first_patch[side_slot(at.polygon, at.side)]);
+  for (const SidePoint& at : points) __builtin_prefetch(&grid_of_[side_slot(at.polygon, at.side)]);
+  // 1. Points that need no search in a cell; of the others the cell.
   std::vector<PatchIndex> patches(points.size(), no_patch);
   std::vector<Searched> searched;
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -349,8 +331,6 @@ std::vector<PatchIndex> PatchLookup::patches_at(std::span<const SidePoint> point
     searched.push_back({k, &grid, cell_index(grid, cell_at(grid, point))});
     __builtin_prefetch(&grid.cells[searched.back().cell]);
   }
-
-  // 2. What does.
   return with_searched(std::move(patches), searched, points);
 }
 

@@ -3,6 +3,8 @@
 #include "patchlight/base/large_array.h"
 #include "patchlight/mesh/patch_mesh.h"
 
+#include "mesh/noded_lines.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +51,6 @@ class PatchLookup {
   std::vector<PatchIndex> patches_at(std::span<const SidePoint> points) const;
 
  private:
-  using Flat = Eigen::Vector2d;  // in the plane of a grid
   // The corners of a patch in the plane, counter-clockwise, side by side in memory; a triangle repeats its last.
   struct alignas(64) Outline {
     std::array<double, 4> u, v;
@@ -79,8 +80,8 @@ class PatchLookup {
     const Outline& outline(PatchIndex patch) const { return outlines[patch - first]; }
   };
   Grid make_grid(PatchRange range) const;
-  static CellPatches with_middle(CellPatches cell, const Grid& grid, const Flat& middle);
-  static bool surely_holds(const CellPatches& cell, const Flat& point);
+  static CellPatches with_middle(CellPatches cell, const Grid& grid, const FlatPoint& middle);
+  static bool surely_holds(const CellPatches& cell, const FlatPoint& point);
   static LargeArray<CellPatches> cells_of(const Grid& grid, std::span<const std::uint32_t> begin);
   Outline outline_of(const Grid& grid, PatchIndex patch) const;
   const Grid& grid_on(PolygonIndex polygon, Side side) const;

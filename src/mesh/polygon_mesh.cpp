@@ -1,8 +1,6 @@
 #include "mesh/polygon_mesh.h"
 
-#include "mesh/noded_lines.h"
-#include "mesh/outline.h"
-#include "mesh/triangulation.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +10,17 @@
 namespace patchlight {
 namespace {
 
-// Of the lattice to the boundary, in spacings: of .3 to .7, the one with the fewest patches.
+// Of the lattice to the boundary, in spacings: of 0.3 to 0.7, the one with the fewest patches.
 constexpr double lattice_margin = 0.6;
 
 OutlinePlane plane_of(const Outline& outline) {
   // Edges that are equal but for rounding count as equal: the first is taken.
-  constexpr double rounding = 1e-9;
   const std::size_t n = outline.corners.size();
   Vector longest = Vector::Zero();
   std::size_t first = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const Vector edge = outline.corners[(k + 1) % n] - outline.corners[k];
-    if (edge.norm() > (1 + rounding) * longest.norm()) longest = edge, first = k;
+    if (edge.norm() > (1 + tolerance_of_shapes) * longest.norm()) longest = edge, first = k;
   }
   OutlinePlane plane{.origin = outline.corners[first],
                      .axes = {},
@@ -40,16 +37,14 @@ OutlinePlane plane_of(const Outline& outline) {
 // would leave edges that are too long the lattice is as fine as it has to be: no point of the outline is farther from
 // it than (lattice_margin + 1 / sqrt(3)) spacings.
 double lattice_spacing(const Outline& outline, const OutlinePlane& plane, double max_edge) {
-  constexpr double corners_per_point = 4;
-  constexpr double reaches_outline = 0.8;  // < 1 / (lattice_margin + 1 / sqrt(3))
   const double area_per_spacing = std::sqrt(0.75);
   const double spacing = plane.spacing;
   if (plane.is_cut) return spacing;
   const double area = area_vector(outline.corners).norm();
   const auto corners = static_cast<double>(outline.corners.size());
   if (area <= corners * area_per_spacing * spacing * spacing) return spacing;
-  const double of_few = std::sqrt(corners_per_point * area / (corners * area_per_spacing));
-  return std::max(spacing, std::min(reaches_outline * max_edge, of_few));
+  const double of_few = std::sqrt(4 * area / (corners * area_per_spacing));
+  return std::max(spacing, std::min(0.8 * max_edge, of_few));  // 0.8 < 1 / (lattice_margin + 1 / sqrt(3))
 }
 
 // The points of each line, in parts that are short enough.
@@ -77,13 +72,9 @@ PolygonMesh refine_polygon(const Outline& outline, double max_edge) {
   std::vector<FlatPoint> corners;
   for (const Point& corner : outline.corners) corners.push_back(plane.flat(corner));
 
-  Triangulation triangulation(outline, plane, max_edge);
-  triangulation.make_delaunay();
-  triangulation.cut_boundary();
-  triangulation.insert_lines(lines_in_parts(outline, plane, max_edge));
-  triangulation.insert_rows(lattice_rows(corners, flat_lines(outline, plane), spacing, lattice_margin * spacing));
-  triangulation.split_long_edges();
-  return triangulation.result(plane);
+  const InnerPoints inner{lines_in_parts(outline, plane, max_edge),
+                          lattice_rows(corners, flat_lines(outline, plane), spacing, lattice_margin * spacing)};
+  return delaunay_mesh(outline, plane, max_edge, inner);
 }
 
 // How a polygon is meshed.

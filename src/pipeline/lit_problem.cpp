@@ -2,7 +2,7 @@
 
 #include "base/sampling.h"
 #include "lighting/mirrored_irradiance.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/problem_of.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"

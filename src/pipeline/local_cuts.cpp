@@ -2,7 +2,7 @@
 
 #include "accuracy/refinement.h"
 #include "base/sampling.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "pipeline/error_goals.h"
 #include "plan/goal.h"
 

@@ -6,7 +6,6 @@
 #include "form_factor/patch_keys.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "pipeline/conserved_flux.h"
 #include "pipeline/needed_light.h"
 #include "pipeline/problem_of.h"

@@ -3,7 +3,7 @@
 #include "patchlight/solve/solve.h"
 
 #include "pipeline/exchange_and_light.h"
-#include "solve/solved_bands.h"
+#include "solve/scattering.h"
 
 namespace patchlight {
 

@@ -9,7 +9,6 @@
 #include "base/sampling.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"

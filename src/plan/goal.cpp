@@ -6,7 +6,6 @@
 #include "base/vectors.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "scene/coverings.h"
 #include "visibility/occluder.h"
 

@@ -1,7 +1,7 @@
 #include "solve/bounds.h"
 
 #include "base/vectors.h"
-#include "solve/krylov.h"
+#include "solve/iterations.h"
 #include "solve/scattering.h"
 
 #include <Eigen/Eigenvalues>
@@ -40,11 +40,10 @@ struct Tridiagonal {
 // The three-term recurrence of Lanczos (Golub and Van Loan 2013, algorithm 10.1.1) in the inner product
 // <x, y> = sum_i A_i rho_i x_i y_i. Vectors are not made orthogonal again: the largest eigenvalue does not need it.
 Tridiagonal lanczos(const TransportOperator& transport, const RadiosityProblem& problem, int steps) {
-  constexpr double smallest = 1e-14;  // of eigenvalues of at most 1: the space is exhausted
   const Eigen::Index bands = problem.exitance.cols();
   const auto norm_of = [&](const Field& h) {
     const Eigen::ArrayXd norm = reflected_square(problem.scattering, h, problem.area).max(0.0).sqrt();
-    return Eigen::ArrayXd((norm > smallest).select(norm, 0.0));
+    return Eigen::ArrayXd((norm > 1e-14).select(norm, 0.0));  // eigenvalues are at most 1: the space is exhausted
   };
   const auto unit = [](const Field& h, const Eigen::ArrayXd& norm) {
     return scaled(h, (norm > 0).select(norm.inverse(), 0.0));
@@ -65,6 +64,71 @@ Tridiagonal lanczos(const TransportOperator& transport, const RadiosityProblem& 
     h = unit(next, norm);
   }
   return T;
+}
+
+// No bounce that is left out of v may be above this one.
+constexpr double last_bounce = 0.75;
+
+// How many more bounces that takes if they go on falling as the last four did. Where this estimate is wrong, no bound
+// is found.
+double bounces_left(const std::vector<double>& highest_bounces) {
+  if (highest_bounces.size() <= 4) return 0;
+  const double now = highest_bounces.back();
+  const double decay = std::log(highest_bounces[highest_bounces.size() - 5] / now) / 4;
+  return decay > 0 ? std::log(now / last_bounce) / decay : no_bound;
+}
+
+constexpr int most_applications = 60;  // for weights
+
+// v = 1 + K 1 + ... + K^n 1, Jacobi's iteration for v = 1 + K v, which leaves v - K v = 1 - K^(n+1) 1: for rows that
+// are not reciprocal, and for sheets. It goes on until no K^(n+1) 1 is above 3/4, and is given up as soon as it will
+// not get there. Where K 1 is the same everywhere, the bound does not depend on n.
+PatchWeights weights_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem) {
+  PatchWeights weights{Field::Ones(problem.exitance.rows(), problem.exitance.cols()), {}, 0};
+  Field bounce = weights.v;
+  std::vector<double> highest_bounces{1};
+  for (;;) {
+    bounce = problem.scattering.reflect(transport.apply(bounce));
+    ++weights.applications;
+    highest_bounces.push_back(highest(bounce).maxCoeff());
+    if (!(highest_bounces.back() > last_bounce) ||
+        weights.applications + bounces_left(highest_bounces) >= most_applications)
+      break;
+    weights.v += bounce;
+  }
+  weights.g = 1 - bounce;
+  return weights;
+}
+
+// The largest share that a patch scatters in any band: R of no band is above it.
+Scattering of_brightest_bands(const Scattering& scattering) {
+  Scattering highest{scattering.reflectance.rowwise().maxCoeff(), scattering.other_side, {}};
+  if (!scattering.is_diagonal()) highest.transmittance = scattering.transmittance.rowwise().maxCoeff();
+  return highest;
+}
+
+// 1 in the bands of this R.
+RadiosityProblem glowing(const Scattering& scattering, const Eigen::VectorXd& area) {
+  return {scattering, Field::Ones(scattering.reflectance.rows(), scattering.reflectance.cols()), area};
+}
+
+// v of a problem in which all patches emit 1, and g where it is known without another application.
+PatchWeights loose_weights(const TransportOperator& transport, const RadiosityProblem& glowing) {
+  if (!transport.is_reciprocal() || !glowing.scattering.is_diagonal()) return weights_by_bounces(transport, glowing);
+  const auto [v, applications] = glowing_radiosity(transport, glowing, most_applications);
+  return {v, {}, applications};
+}
+
+bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() && (weights.g > 0).all(); }
+
+// The same v for all bands, from R that is as large as any of theirs: v - K v is not below what it is with that.
+PatchWeights shared_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
+  const Eigen::Index bands = problem.exitance.cols();
+  const PatchWeights brightest =
+      loose_weights(transport, glowing(of_brightest_bands(problem.scattering), problem.area));
+  const Field irradiance = transport.apply(brightest.v).replicate(1, bands);
+  const Field of_all = brightest.v.replicate(1, bands);
+  return {of_all, of_all - problem.scattering.reflect(irradiance), brightest.applications + 1};
 }
 
 }  // namespace
@@ -91,87 +155,6 @@ Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const Radiosi
   return spectral_radius_with_error(transport, problem, steps).value;
 }
 
-namespace {
-
-// Escape is what a row lacks to 1, beyond what closure leaves.
-constexpr double least_escape = 1e-6;
-
-constexpr double no_bound = std::numeric_limits<double>::infinity();
-
-// No bounce that is left out of v may be above this one. More bounces make a tighter bound where reflectances differ,
-// by at most a third of what one iteration of a solver makes up for.
-constexpr double last_bounce = 0.75;
-
-// How many more bounces that takes, if each is as much less than the one before as the last few were. An estimate:
-// where white patches lie far from all that absorbs, the highest bounce may begin to fall late. Where it is wrong no
-// bound is found, never a wrong one.
-double bounces_left(const std::vector<double>& highest_bounces) {
-  constexpr std::size_t some = 4;
-  if (highest_bounces.size() <= some) return 0;
-  const double now = highest_bounces.back();
-  const double decay = std::log(highest_bounces[highest_bounces.size() - 1 - some] / now) / some;
-  return decay > 0 ? std::log(now / last_bounce) / decay : no_bound;
-}
-
-// v = 1 + K 1 + ... + K^n 1, Jacobi's iteration for v = 1 + K v, which leaves v - K v = 1 - K^(n+1) 1: for rows that
-// are not reciprocal, and for sheets. It goes on until no K^(n+1) 1 is above 3/4, and is given up as soon as it will
-// not get there. Where K 1 is the same everywhere, the bound does not depend on n.
-PatchWeights weights_by_bounces(const TransportOperator& transport, const RadiosityProblem& problem,
-                                int most_applications) {
-  PatchWeights weights{Field::Ones(problem.exitance.rows(), problem.exitance.cols()), {}, 0};
-  Field bounce = weights.v;
-  std::vector<double> highest_bounces{1};
-  for (;;) {
-    bounce = problem.scattering.reflect(transport.apply(bounce));
-    ++weights.applications;
-    highest_bounces.push_back(highest(bounce).maxCoeff());
-    if (!(highest_bounces.back() > last_bounce) ||
-        weights.applications + bounces_left(highest_bounces) >= most_applications)
-      break;
-    weights.v += bounce;
-  }
-  weights.g = 1 - bounce;
-  return weights;
-}
-
-// With fewer bands each has weights of its own, which are somewhat tighter.
-constexpr Eigen::Index few_bands = 3;
-
-// The largest share that a patch scatters in any band: R of no band is above it.
-Scattering of_brightest_bands(const Scattering& scattering) {
-  Scattering highest{scattering.reflectance.rowwise().maxCoeff(), scattering.other_side, {}};
-  if (!scattering.is_diagonal()) highest.transmittance = scattering.transmittance.rowwise().maxCoeff();
-  return highest;
-}
-
-// 1 in the bands of this R.
-RadiosityProblem glowing(const Scattering& scattering, const Eigen::VectorXd& area) {
-  return {scattering, Field::Ones(scattering.reflectance.rows(), scattering.reflectance.cols()), area};
-}
-
-// v of a problem in which all patches emit 1, and g where it is known without another application.
-PatchWeights loose_weights(const TransportOperator& transport, const RadiosityProblem& glowing) {
-  constexpr int most_applications = 60;
-  if (!transport.is_reciprocal() || !glowing.scattering.is_diagonal())
-    return weights_by_bounces(transport, glowing, most_applications);
-  const auto [v, applications] = glowing_radiosity(transport, glowing, most_applications);
-  return {v, {}, applications};
-}
-
-bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() && (weights.g > 0).all(); }
-
-// The same v for all bands, from R that is as large as any of theirs: v - K v is not below what it is with that.
-PatchWeights shared_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
-  const Eigen::Index bands = problem.exitance.cols();
-  const PatchWeights brightest =
-      loose_weights(transport, glowing(of_brightest_bands(problem.scattering), problem.area));
-  const Field irradiance = transport.apply(brightest.v).replicate(1, bands);
-  const Field of_all = brightest.v.replicate(1, bands);
-  return {of_all, of_all - problem.scattering.reflect(irradiance), brightest.applications + 1};
-}
-
-}  // namespace
-
 bool Bounds::contracts(Eigen::Index band) const { return contraction[band] < largest_contraction; }
 
 bool Bounds::contracts() const { return (contraction < largest_contraction).all(); }
@@ -190,7 +173,8 @@ Eigen::ArrayXd contraction_of(const TransportOperator& transport, const Radiosit
 std::optional<PatchWeights> patch_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
   // v = 1 + K v is the radiosity of patches that all emit 1; any approximation will do, of which g = v - K v > 0.
   int in_vain = 0;
-  if (problem.exitance.cols() > few_bands) {
+  // With few bands each has weights of its own, which are tighter.
+  if (problem.exitance.cols() > 3) {
     PatchWeights weights = shared_weights(transport, problem);
     if (are_positive(weights)) return weights;
     in_vain = weights.applications;
@@ -213,22 +197,15 @@ std::string trapped_light(const TransportOperator& transport, const RadiosityPro
   if ((problem.scattering.norm_bound() < largest_contraction).all()) return {};
   // 1. Patches that lose light: they absorb, or some leaves.
   const Field row_sum = transport.apply(Field::Ones(transport.size(), 1));
-  const auto keeps = [&](Eigen::Index i) { return row_sum(i, 0) >= 1 - least_escape; };
-  const Field reflected = problem.scattering.reflect(Field::Ones(problem.exitance.rows(), problem.exitance.cols()));
-  Field loses = Field::Zero(problem.exitance.rows(), problem.exitance.cols());
-  for (Eigen::Index i = 0; i < loses.rows(); ++i) {
-    for (Eigen::Index band = 0; band < loses.cols(); ++band) {
-      loses(i, band) = reflected(i, band) < largest_contraction || !keeps(i) ? 1 : 0;
-    }
-  }
+  const Eigen::Index bands = problem.exitance.cols();
+  const Field reflected = problem.scattering.reflect(Field::Ones(problem.exitance.rows(), bands));
+  const auto keeps = (row_sum >= 1 - least_escape).replicate(1, bands);
+  Field loses = (reflected < largest_contraction || !keeps).cast<double>();
 
   // 2. With them all from which light gets to them, bounce by bounce, as long as a lamp is among the others: that one
   //    would shine for ever.
-  const auto lamps_among_others = [&] {
-    Eigen::Index lamps = 0;
-    for (Eigen::Index i = 0; i < loses.rows(); ++i)
-      lamps += ((loses.row(i) == 0) && (problem.exitance.row(i) > 0)).any() ? 1 : 0;
-    return lamps;
+  const auto lamps_among_others = [&]() -> Eigen::Index {
+    return ((loses == 0) && (problem.exitance > 0)).rowwise().any().count();
   };
   Eigen::Index patches = lamps_among_others();
   for (bool grows = true; grows && patches > 0; patches = lamps_among_others()) {

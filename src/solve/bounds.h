@@ -5,6 +5,7 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -25,19 +26,25 @@ SpectralRadius spectral_radius_with_error(const TransportOperator& transport, co
 /// The value alone.
 Eigen::ArrayXd spectral_radius(const TransportOperator& transport, const RadiosityProblem& problem, int steps);
 
+/// Stands for a bound that is not known.
+inline constexpr double no_bound = std::numeric_limits<double>::infinity();
+
+/// A row that lacks less to 1 loses no light: closure and rounding leave so much.
+inline constexpr double least_escape = 1e-6;
+
 /// Row sums are known to about 1e-9. With ||K||_A above this no error is known, and a surface that reflects more counts
 /// as one that absorbs nothing.
 inline constexpr double largest_contraction = 1 - 1e-8;
 
 /// Positive weights v with g = v - K v > 0: for any non-negative K, |B* - B|_i <= v_i max_j |r_j| / g_j. One column per
-/// band. (Rows that were stored as floats have K_ii of -3e-7 at least, which is left out of account.)
+/// band.
 struct PatchWeights {
   Field v;
   Field g;
   int applications = 0;  ///< that finding them took
 };
 
-/// What a residual says about the error.
+/// Bounds on the error from the residual.
 struct Bounds {
   Eigen::ArrayXd contraction;           ///< per band, a bound on ||K||_A; infinite when none is known
   std::optional<PatchWeights> weights;  ///< where the contraction is not below 1, if they exist
@@ -48,7 +55,7 @@ struct Bounds {
   bool contracts() const;
 };
 
-/// rho_max times the largest row sum, which `options` tells or one application finds.
+/// rho_max times the largest row sum, from `options` or one application.
 /// docs/theory/solvers-and-bounds.md.
 Eigen::ArrayXd contraction_of(const TransportOperator& transport, const RadiosityProblem& problem,
                               const SolverOptions& options);

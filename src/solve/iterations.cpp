@@ -3,8 +3,8 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
+#include "base/tolerances.h"
 #include "base/vectors.h"
-#include "solve/bounds.h"
 #include "solve/scattering.h"
 
 #include <Eigen/LU>
@@ -17,20 +17,66 @@
 namespace patchlight {
 namespace {
 
-constexpr Eigen::Index most_groups = 64;
+// 0 / 0 is 0: nothing is wrong where there is nothing.
+double ratio(double error, double size) { return error == 0 ? 0 : error / size; }
+
+// The larger; not a number is worse than any.
+double worse(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
+
+// The irradiance H for which an iterate is E + rho o H; F B where nothing is reflected.
+Field arrived(const RadiosityProblem& problem, const Iterate& iterate) {
+  return irradiance_behind(problem.scattering, iterate.radiosity - problem.exitance, iterate.irradiance);
+}
+
+enum class Order { forward, backward };
+
+// B_i <- B_i + relaxation (E_i + rho_i H_i - B_i), patch by patch.
+Relax relaxing(const RadiosityProblem& problem, double relaxation, Order order) {
+  return [&problem, relaxation, order](const SweptPatches& patches) -> Field {
+    const Eigen::Index rows = patches.radiosity.rows();
+    Field change = Field::Zero(rows, patches.radiosity.cols());
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      const Eigen::Index r = order == Order::forward ? k : rows - 1 - k;
+      const Eigen::Index i = patches.range.begin + r;
+      // The irradiance is by the old radiosities of these patches: add what those before have changed since.
+      const Field H = patches.irradiance.row(r) + (patches.own_form_factors.row(r) * change.matrix()).array();
+      change.row(r) =
+          relaxation * (problem.exitance.row(i) + reflect_at(problem.scattering, i, H) - patches.radiosity.row(r));
+    }
+    return patches.radiosity + change;
+  };
+}
+
+// Sweeps from the first patch to the last. A sweep also finds F B of what it starts from: iterate k is measured in
+// sweep k + 1.
+Solution swept(Iterations iterations, const RowTransport& transport, double relaxation) {
+  const RadiosityProblem& problem = iterations.problem();
+  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
+  const Relax relax = relaxing(problem, relaxation, Order::forward);
+  Sweep sweep = transport.sweep({problem.exitance, {}, {}}, relax, {});
+  iterations.count(1);
+  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
+    Field B = sweep.radiosity;
+    sweep = transport.sweep(std::move(sweep), relax, {});
+    iterations.count(1);
+    Field H = sweep.irradiance.size() > 0 ? std::move(sweep.irradiance) : iterations.apply(B);
+    iterations.record(iterate_of(problem, std::move(B), std::move(H)), k);
+  }
+  return iterations.finish();
+}
 
 }  // namespace
 
 CoarseTransport::CoarseTransport(const RadiosityProblem& problem)
     : problem_(problem),
       patches_(problem.area.size()),
-      groups_(std::min(most_groups, patches_)),
+      groups_(std::min<Eigen::Index>(64, patches_)),
       arriving_(Eigen::MatrixXf::Zero(patches_, groups_)),
       arrived_(Eigen::VectorXd::Zero(groups_)),
       area_(Eigen::VectorXd::Zero(groups_)) {}
 
 void CoarseTransport::learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving) {
-  // A row of F is the same in all bands: the strongest one tells it best.
+  // A row of F is the same in all bands: the strongest one has the most digits.
   Eigen::Index band = 0;
   if (!(shot_radiosity.row(0).abs().maxCoeff(&band) > 0)) return;
   const Eigen::VectorXd row = arriving.col(band) / shot_radiosity(0, band);
@@ -87,23 +133,6 @@ Field CoarseTransport::ambient(const Field& unshot) const {
   return irradiance;
 }
 
-namespace {
-
-constexpr double unknown = std::numeric_limits<double>::infinity();
-
-// 0 / 0 is 0: nothing is wrong where there is nothing.
-double ratio(double error, double size) { return error == 0 ? 0 : error / size; }
-
-// The larger; what is not a number is worse than any.
-double worse(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
-
-// The irradiance H for which an iterate is E + rho o H; F B where nothing is reflected.
-Field arrived(const RadiosityProblem& problem, const Iterate& iterate) {
-  return irradiance_behind(problem.scattering, iterate.radiosity - problem.exitance, iterate.irradiance);
-}
-
-}  // namespace
-
 Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance) {
   Field residual = radiosity_from(problem, irradiance) - radiosity;
   return {std::move(radiosity), std::move(irradiance), std::move(residual)};
@@ -142,7 +171,7 @@ Iteration Iterations::measured(const Eigen::ArrayXd& residual_norm, int number) 
   for (Eigen::Index band = 0; band < residual_norm.size(); ++band) {
     const double residual = ratio(residual_norm[band], first_residual_[band]);
     iteration.relative_residual = worse(iteration.relative_residual, residual);
-    if (residual_norm[band] != 0) iteration.error_bound = unknown;
+    if (residual_norm[band] != 0) iteration.error_bound = no_bound;
   }
   return iteration;
 }
@@ -153,7 +182,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
   Iteration iteration = measured(norm, number);
   iteration.error_bound = 0;
   for (Eigen::Index band = 0; band < norm.size(); ++band) {
-    double bound = unknown;
+    double bound = no_bound;
     if (bounds_.contracts(band)) {
       bound = norm[band] / (1 - bounds_.contraction[band]);
     } else if (bounds_.weights) {
@@ -192,10 +221,9 @@ void Iterations::stop() {
 }
 
 void Iterations::keep_observer() {
-  constexpr double interval = 0.1;
   if (!observer_ || solution_.stopped || wall_seconds() < next_report_) return;
   if (!observer_({.stage = Stage::solve, .fraction = fraction_})) stop();
-  next_report_ = wall_seconds() + interval;
+  next_report_ = wall_seconds() + 0.1;
 }
 
 bool Iterations::start(Field direct_irradiance) {
@@ -246,22 +274,18 @@ bool Iterations::record(const Eigen::ArrayXd& residual_norm, MakeIterate make, i
   return false;
 }
 
-// No bound on the error follows from anything, and no reference tells it.
+// No bound on the error follows from anything, and there is no reference.
 bool Iterations::needs_norm_only() const {
-  bool some_contract = false;
-  for (Eigen::Index band = 0; band < bounds_.contraction.size(); ++band)
-    some_contract = some_contract || bounds_.contracts(band);
+  const bool some_contract = (bounds_.contraction < largest_contraction).any();
   return !some_contract && !bounds_.weights && !options_.reference;
 }
 
-// True when it is finite. Tells whether it goes on.
+// Returns false when it is not finite.
 bool Iterations::put_into_history(const Iteration& iteration) {
   // Near rounding a residual that does not fall any more has come to its end.
-  constexpr double near_rounding = 1e-12;
-  constexpr int patience = 30;
   without_progress_ = iteration.relative_residual < least_residual_ / 2 ? 0 : without_progress_ + 1;
   least_residual_ = std::min(least_residual_, iteration.relative_residual);
-  if (least_residual_ < near_rounding && without_progress_ > patience) hopeless_ = true;
+  if (least_residual_ < tolerance_of_arithmetic && without_progress_ > 30) hopeless_ = true;
   solution_.history.push_back(iteration);
   const bool is_finite = std::isfinite(iteration.relative_residual);
   if (!is_finite) hopeless_ = true;
@@ -287,47 +311,6 @@ Solution Iterations::finish() {
   return solution;
 }
 
-namespace {
-
-enum class Order { forward, backward };
-
-// B_i <- B_i + relaxation (E_i + rho_i H_i - B_i), patch by patch.
-Relax relaxing(const RadiosityProblem& problem, double relaxation, Order order) {
-  return [&problem, relaxation, order](const SweptPatches& patches) -> Field {
-    const Eigen::Index rows = patches.radiosity.rows();
-    Field change = Field::Zero(rows, patches.radiosity.cols());
-    for (Eigen::Index k = 0; k < rows; ++k) {
-      const Eigen::Index r = order == Order::forward ? k : rows - 1 - k;
-      const Eigen::Index i = patches.range.begin + r;
-      // The irradiance is by the old radiosities of these patches: add what those before have changed since.
-      const Field H = patches.irradiance.row(r) + (patches.own_form_factors.row(r) * change.matrix()).array();
-      change.row(r) =
-          relaxation * (problem.exitance.row(i) + reflect_at(problem.scattering, i, H) - patches.radiosity.row(r));
-    }
-    return patches.radiosity + change;
-  };
-}
-
-// Sweeps from the first patch to the last. A sweep also finds F B of what it starts from: iterate k is measured in
-// sweep k + 1.
-Solution swept(Iterations iterations, const RowTransport& transport, double relaxation) {
-  const RadiosityProblem& problem = iterations.problem();
-  if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
-  const Relax relax = relaxing(problem, relaxation, Order::forward);
-  Sweep sweep = transport.sweep({problem.exitance, {}, {}}, relax, {});
-  iterations.count(1);
-  for (int k = 1; k <= iterations.options().max_iterations && !iterations.ended(); ++k) {
-    Field B = sweep.radiosity;
-    sweep = transport.sweep(std::move(sweep), relax, {});
-    iterations.count(1);
-    Field H = sweep.irradiance.size() > 0 ? std::move(sweep.irradiance) : iterations.apply(B);
-    iterations.record(iterate_of(problem, std::move(B), std::move(H)), k);
-  }
-  return iterations.finish();
-}
-
-}  // namespace
-
 Solution jacobi(Iterations iterations) {
   const RadiosityProblem& problem = iterations.problem();
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
@@ -349,8 +332,7 @@ Solution sor(Iterations iterations, const RowTransport& transport) {
   const std::optional<double>& given = iterations.options().relaxation;
   if (given) return swept(std::move(iterations), transport, *given);
   // A few steps are enough: the factor hardly depends on the third digit.
-  constexpr int steps = 5;
-  const double radius = largest(iterations.spectral_radius(steps));
+  const double radius = largest(iterations.spectral_radius(5));
   return swept(std::move(iterations), transport, relaxation_for(radius));
 }
 
@@ -372,9 +354,8 @@ Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& trans
 // [-bound, bound]. All steps are taken on B and F B at once, by linearity.
 Solution chebyshev(Iterations iterations) {
   const RadiosityProblem& problem = iterations.problem();
-  constexpr int steps = 20;
   const Eigen::ArrayXd bound =
-      iterations.bounds().contracts() ? iterations.bounds().contraction : iterations.spectral_radius(steps);
+      iterations.bounds().contracts() ? iterations.bounds().contraction : iterations.spectral_radius(20);
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
   Field B = problem.exitance;
   Field before = B;

@@ -1,6 +1,5 @@
-#include "solve/krylov.h"
-
 #include "base/vectors.h"
+#include "solve/iterations.h"
 #include "solve/scattering.h"
 
 #include <Eigen/QR>
@@ -105,13 +104,12 @@ Solution deflated_cg(Iterations iterations) { return solved(std::move(iterations
 
 GlowingRadiosity glowing_radiosity(const TransportOperator& transport, const RadiosityProblem& problem,
                                    int max_iterations) {
-  constexpr double largest_residual = 0.5;
   const Apply apply = [&transport](const FieldView& B) { return transport.apply(B); };
   ConjugateGradient method(problem, apply, apply(problem.exitance));
   int k = 0;
   for (; k < max_iterations; ++k) {
     const Field r = radiosity_from(problem, method.irradiance()) - method.radiosity();
-    if ((highest(r) <= largest_residual).all()) break;
+    if ((highest(r) <= 0.5).all()) break;
     method.step();
   }
   return {method.radiosity(), k + 1};
@@ -174,7 +172,6 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
 // it was along the others, as then rounding leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and
 // Stewart 1976).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
-  constexpr double much_is_left = 0.1;  // one digit of orthogonality at a step
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
   Field next = problem.scattering.reflect(irradiance);
   arnoldi.irradiance.push_back(std::move(irradiance));
@@ -186,7 +183,7 @@ Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradia
     next = plus_combination(std::move(next), arnoldi.v, -along);
     along_all += along;
     norm = area_norm(next, problem.area);
-    if ((norm >= much_is_left * before).all()) break;
+    if ((norm >= 0.1 * before).all()) break;  // one digit of orthogonality is lost at most
     before = norm;
   }
   for (Eigen::Index band = 0; band < norm.size(); ++band) {

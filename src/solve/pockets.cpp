@@ -1,5 +1,6 @@
 #include "solve/pockets.h"
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "base/vectors.h"
 #include "solve/bounds.h"
@@ -20,9 +21,6 @@ namespace {
 
 // A pocket of at most so many patches is solved by elimination.
 constexpr Eigen::Index few_patches = 512;
-// Of the incomplete factors: what is dropped, relative to its row, and their size, relative to the matrix.
-constexpr float dropped_share = 0.01F;
-constexpr int size_of_factors = 2;
 
 // So many bands go through the matrix together: it is reading this that takes time.
 constexpr Eigen::Index bands_at_once = 4;
@@ -99,10 +97,9 @@ struct BandIterate {
 // The next direction. Where the residual has come to be at right angles to its shadow, but for rounding, the search
 // begins anew.
 void turn(BandIterate& at) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   BandRow rho = sum_of_products(at.shadow, at.residual);
   BandRow beta = ratio_or_zero(rho, at.rho) * ratio_or_zero(at.alpha, at.omega);
-  const BandRow least = epsilon * epsilon * sum_of_products(at.shadow, at.shadow);
+  const BandRow least = 0x1p-104 * sum_of_products(at.shadow, at.shadow);  // the square of the machine epsilon
   for (Eigen::Index band = 0; band < bands_at_once; ++band) {
     if (!(std::abs(rho[band]) < least[band])) continue;
     at.shadow.col(band) = at.residual.col(band);
@@ -115,14 +112,13 @@ void turn(BandIterate& at) {
 
 // Up to four bands by BiCGSTAB, preconditioned. Bands that are solved take steps of length 0.
 BandBlock iterated(const Pocket& pocket, const BandBlock& reflectance, const BandBlock& right, double tolerance) {
-  constexpr int most_iterations = 200;
   const auto apply = [&](const BandBlock& x) -> BandBlock {
     return x - arriving_of(pocket.form_factors, reflectance * x);
   };
   const BandRow enough = tolerance * tolerance * sum_of_products(right, right);
   const BandBlock zero = BandBlock::Zero(right.rows(), bands_at_once);
   BandIterate at{.found = zero, .residual = right, .shadow = right, .direction = zero, .moved = zero};
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < 200; ++iteration) {
     const BandRow goes_on = (sum_of_products(at.residual, at.residual) > enough).cast<double>();
     if (!(goes_on > 0).any()) break;
     turn(at);
@@ -139,40 +135,26 @@ BandBlock iterated(const Pocket& pocket, const BandBlock& reflectance, const Ban
   return at.found;
 }
 
-// Light that is still there after as many bounces among all patches, and then among those that have kept it so far.
-// With 16 more of the latter fewer patches are followed apart, and the kitchen of docs/benchmarks/real-models.md takes
-// 30 iterations, not 19.
-constexpr int first_bounces = 4;
-constexpr int more_bounces = 8;
-constexpr double kept_share = 0.5;
-// Half of it is left after 8 bounces of which each leaves .917.
-constexpr double least_reflectance = 0.917;
+// Where more of all patches keep their light, it is the room that is white.
 constexpr double largest_part = 1.0 / 8;
-// What a row may lack to 1 by rounding.
-constexpr double least_loss = 1e-6;
-// However often light is reflected in a pocket that is solved by elimination, only rounding is left, which the bounces
-// multiply. Of so many 1e-8 of the light. Iterations take the longer the more there are.
-constexpr double most_bounces = 1e8;
-constexpr double most_bounces_by_iterations = 1e5;
 
-// Those of some patches that keep the share.
+// Those of some patches that keep half of their light.
 std::vector<PatchIndex> keeping_enough(const std::vector<PatchIndex>& patches, const Eigen::VectorXd& share) {
   std::vector<PatchIndex> those;
   for (std::size_t k = 0; k < patches.size(); ++k)
-    if (share[static_cast<Eigen::Index>(k)] > kept_share) those.push_back(patches[k]);
+    if (share[static_cast<Eigen::Index>(k)] > 0.5) those.push_back(patches[k]);
   return those;
 }
 
 // F among some patches.
 SparseRows rows_among(const RayTransport& transport, const std::vector<PatchIndex>& patches) {
-  constexpr int none = -1;
-  std::vector<int> number(transport.size(), none);
+  std::vector<int> number(transport.size(), -1);
   for (std::size_t k = 0; k < patches.size(); ++k) number[patches[k]] = static_cast<int>(k);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t k = 0; k < patches.size(); ++k) {
     const PatchIndex i = patches[k];
     const auto add = [&](PatchIndex j, double form_factor) {
-      if (number[j] != none) entries.emplace_back(static_cast<int>(k), number[j], 0.5 * form_factor);
+      if (number[j] >= 0) entries.emplace_back(static_cast<int>(k), number[j], 0.5 * form_factor);
     };
     for (const std::size_t half : {0, 1}) {
       const RayRows& rows = transport.rows(half);
@@ -188,26 +170,20 @@ SparseRows rows_among(const RayTransport& transport, const std::vector<PatchInde
   return among;
 }
 
-Eigen::VectorXd values_at(const std::vector<PatchIndex>& patches, const Eigen::VectorXd& values) {
-  Eigen::VectorXd those(static_cast<Eigen::Index>(patches.size()));
-  for (std::size_t k = 0; k < patches.size(); ++k) those[static_cast<Eigen::Index>(k)] = values[patches[k]];
-  return those;
-}
-
-// The patches of which half of the light stays among them; more than an eighth of all where it is the room.
+// The patches of which half of the light stays among all for four bounces, and among them for eight more. More bounces
+// would find fewer patches, and solvers would take more iterations. More than an eighth of all where it is the room.
 std::vector<PatchIndex> keeping_light(const RayTransport& transport, const Eigen::VectorXd& reflectance) {
   std::vector<PatchIndex> patches(transport.size());
   std::iota(patches.begin(), patches.end(), PatchIndex{0});
   const auto most = static_cast<std::size_t>(largest_part * transport.size());
   Eigen::VectorXd left = Eigen::VectorXd::Ones(reflectance.size());
-  for (int bounce = 0; bounce < first_bounces; ++bounce)
-    left = reflectance.cwiseProduct(transport.apply(left).col(0).matrix());
+  for (int bounce = 0; bounce < 4; ++bounce) left = reflectance.cwiseProduct(transport.apply(left).col(0).matrix());
   patches = keeping_enough(patches, left);
   if (patches.size() > most) return patches;
   const SparseRows among = rows_among(transport, patches);
-  const Eigen::VectorXd reflected = values_at(patches, reflectance);
+  const Eigen::VectorXd reflected = reflectance(patches);
   left = Eigen::VectorXd::Ones(among.rows());
-  for (int bounce = 0; bounce < more_bounces; ++bounce) left = reflected.cwiseProduct(among * left);
+  for (int bounce = 0; bounce < 8; ++bounce) left = reflected.cwiseProduct(among * left);
   return keeping_enough(patches, left);
 }
 
@@ -215,7 +191,7 @@ std::vector<PatchIndex> keeping_light(const RayTransport& transport, const Eigen
 Eigen::ArrayXd losing_light(const SparseRows& among, const Eigen::VectorXd& reflectance) {
   const Eigen::VectorXd row_sum = among * Eigen::VectorXd::Ones(among.rows());
   Eigen::VectorXd loses =
-      (reflectance.array() < largest_contraction || row_sum.array() < 1 - least_loss).cast<double>().matrix();
+      (reflectance.array() < largest_contraction || row_sum.array() < 1 - least_escape).cast<double>().matrix();
   for (double before = -1; loses.sum() > before;) {
     before = loses.sum();
     loses = (loses.array() > 0 || (among * loses).array() > 0).cast<double>().matrix();
@@ -226,43 +202,28 @@ Eigen::ArrayXd losing_light(const SparseRows& among, const Eigen::VectorXd& refl
 // Groups of patches that see each other, directly or by way of others of them.
 struct Groups {
   std::vector<std::vector<std::size_t>> members;  // of each, by their numbers, in rising order
-  std::vector<std::size_t> group;                 // per patch
+  std::vector<std::size_t> group;                 // per patch; as many as patches: of none
   std::vector<int> place;                         // per patch: among the members of its group
 };
 
-// Union and find by the lowest number of each group; those that lose no light are groups of their own.
-std::vector<std::size_t> lowest_of_groups(const SparseRows& among, const Eigen::ArrayXd& loses) {
-  std::vector<std::size_t> lower(static_cast<std::size_t>(loses.size()));
-  std::iota(lower.begin(), lower.end(), std::size_t{0});
-  const auto lowest = [&lower](std::size_t k) {
-    while (lower[k] != k) k = lower[k] = lower[lower[k]];
-    return k;
-  };
-  for (Eigen::Index row = 0; row < among.rows(); ++row) {
-    if (loses[row] == 0) continue;
-    for (SparseRows::InnerIterator entry(among, row); entry; ++entry) {
-      if (loses[entry.col()] == 0) continue;
-      const auto [low, high] =
-          std::minmax({lowest(static_cast<std::size_t>(row)), lowest(static_cast<std::size_t>(entry.col()))});
-      lower[high] = low;
-    }
-  }
-  for (std::size_t k = 0; k < lower.size(); ++k) lower[k] = lowest(k);
-  return lower;
-}
-
 // Without patches that lose no light: these are of no group.
 Groups groups_of(const SparseRows& among, const Eigen::ArrayXd& loses) {
-  const std::vector<std::size_t> lowest = lowest_of_groups(among, loses);
-  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  Groups groups{{}, std::vector<std::size_t>(lowest.size(), none), std::vector<int>(lowest.size(), 0)};
-  for (std::size_t k = 0; k < lowest.size(); ++k) {
-    if (loses[static_cast<Eigen::Index>(k)] == 0) continue;
-    if (lowest[k] == k) {
+  const auto count = static_cast<std::size_t>(loses.size());
+  DisjointSets sets(count);
+  for (Eigen::Index row = 0; row < among.rows(); ++row) {
+    if (loses[row] == 0) continue;
+    for (SparseRows::InnerIterator entry(among, row); entry; ++entry)
+      if (loses[entry.col()] != 0) sets.join(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(entry.col()));
+  }
+  Groups groups{{}, std::vector<std::size_t>(count, count), std::vector<int>(count, 0)};
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (loses[k] == 0) continue;
+    const std::uint32_t lowest = sets.root(k);
+    if (lowest == k) {
       groups.group[k] = groups.members.size();
       groups.members.emplace_back();
     }
-    groups.group[k] = groups.group[lowest[k]];
+    groups.group[k] = groups.group[lowest];
     groups.place[k] = static_cast<int>(groups.members[groups.group[k]].size());
     groups.members[groups.group[k]].push_back(k);
   }
@@ -290,8 +251,8 @@ IncompleteFactors incomplete_factors(const SparseRows& form_factors, const Eigen
   SparseRows one(form_factors.rows(), form_factors.cols());
   one.setIdentity();
   Ilut ilut;
-  ilut.setDroptol(dropped_share);
-  ilut.setFillfactor(size_of_factors);
+  ilut.setDroptol(0.01F);  // relative to the row
+  ilut.setFillfactor(2);   // relative to the matrix
   const Eigen::SparseMatrix<float, Eigen::RowMajor> matrix =
       SparseRows(one - form_factors * reflectance.asDiagonal()).cast<float>();
   ilut.compute(matrix);
@@ -307,17 +268,35 @@ std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const SparseRow
   Pocket pocket;
   pocket.patches = std::move(patches);
   pocket.form_factors = form_factors;
-  const Eigen::VectorXd reflected = values_at(pocket.patches, reflectance);
+  const Eigen::VectorXd reflected = reflectance(pocket.patches);
   const PocketSystem system = system_within(pocket.form_factors, reflected.array());
   if (!system.is_eliminated()) pocket.nearly_solved = incomplete_factors(pocket.form_factors, reflected);
-  constexpr double loosely = 1e-6;
   const Field once = Field::Ones(reflected.size(), 1);
-  const Field bounces = solution_within(pocket, system, once, loosely);
-  const double most = system.is_eliminated() ? most_bounces : most_bounces_by_iterations;
+  const Field bounces = solution_within(pocket, system, once, 1e-6);
+  // Elimination leaves rounding alone, which the bounces multiply: of 1e8 of them 1e-8 of the light.
+  const double most = system.is_eliminated() ? 1e8 : 1e5;
   const bool hold = (bounces > 0).all() && (residual_within(pocket, system, once, bounces) < 0.5).all();
   if (!hold || bounces.maxCoeff() > most) return std::nullopt;
   pocket.bounces = bounces.col(0).matrix();
   return pocket;
+}
+
+// F B: the irradiance of the patches by each other in each band.
+Field arriving_within(const Pocket& pocket, const Field& radiosity) {
+  using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Dense arriving = pocket.form_factors * radiosity.matrix();
+  return arriving.array();
+}
+
+// F_PP B_P
+Field sent_within(const Pocket& pocket, const FieldView& radiosity) {
+  return arriving_within(pocket, chosen_rows(radiosity, pocket.patches));
+}
+
+void raise_to(std::atomic<double>& highest, double value) {
+  double before = highest;
+  while (before < value && !highest.compare_exchange_weak(before, value)) {
+  }
 }
 
 }  // namespace
@@ -331,17 +310,6 @@ PocketSystem system_within(const SparseRows& form_factors, const FieldView& refl
                                 form_factors * reflectance.col(band).matrix().asDiagonal());
   return system;
 }
-
-namespace {
-
-// F B: the irradiance of the patches by each other, of their radiosities in each band.
-Field arriving_within(const Pocket& pocket, const Field& radiosity) {
-  using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Dense arriving = pocket.form_factors * radiosity.matrix();
-  return arriving.array();
-}
-
-}  // namespace
 
 Field residual_within(const Pocket& pocket, const PocketSystem& system, const FieldView& right, const FieldView& x) {
   return right - x + arriving_within(pocket, system.reflectance * x);
@@ -369,13 +337,13 @@ Field solution_within(const Pocket& pocket, const PocketSystem& system, const Fi
 }
 
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance) {
-  if (!(reflectance.array() > least_reflectance).any()) return nullptr;
+  if (!(reflectance.array() > 0.917).any()) return nullptr;  // its eighth power is one half
   const std::vector<PatchIndex> patches = keeping_light(transport, reflectance);
   if (patches.empty() || static_cast<double>(patches.size()) > largest_part * transport.size()) return nullptr;
 
   const auto pockets = std::make_shared<Pockets>();
   const SparseRows among = rows_among(transport, patches);
-  const Eigen::ArrayXd loses = losing_light(among, values_at(patches, reflectance));
+  const Eigen::ArrayXd loses = losing_light(among, reflectance(patches));
   for (std::size_t k = 0; k < patches.size(); ++k)
     if (loses[static_cast<Eigen::Index>(k)] == 0) pockets->closed.push_back(patches[k]);
   const Groups groups = groups_of(among, loses);
@@ -387,21 +355,6 @@ std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const E
   }
   return pockets->each.empty() && pockets->closed.empty() ? nullptr : pockets;
 }
-
-namespace {
-
-// F_PP B_P
-Field sent_within(const Pocket& pocket, const FieldView& radiosity) {
-  return arriving_within(pocket, chosen_rows(radiosity, pocket.patches));
-}
-
-void raise_to(std::atomic<double>& highest, double value) {
-  double before = highest;
-  while (before < value && !highest.compare_exchange_weak(before, value)) {
-  }
-}
-
-}  // namespace
 
 PocketTransport::PocketTransport(const TransportOperator& transport, const Pockets& pockets,
                                  const Scattering& scattering, bool closed_are_dark, double accuracy)
@@ -428,8 +381,7 @@ Field PocketTransport::followed(const Pocket& pocket, const PocketSystem& system
   Eigen::ArrayXd error = relative_errors(found);
   // Bands that are not near enough are looked for once more, each by itself.
   if (!system.is_eliminated() && !(error <= accuracy_).all()) {
-    constexpr double nearer = 0.1;
-    const Field again = solution_within(pocket, system, irradiance, nearer * tolerance);
+    const Field again = solution_within(pocket, system, irradiance, 0.1 * tolerance);
     for (Eigen::Index band = 0; band < found.cols(); ++band)
       if (!(error[band] <= accuracy_)) found.col(band) = again.col(band);
     error = relative_errors(found);

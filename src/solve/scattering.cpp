@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <limits>
+#include <optional>
 
 namespace patchlight {
 namespace {
@@ -20,6 +21,25 @@ Field on_other_side(const Scattering& scattering, const Field& values) {
 Field scattered_share(const Scattering& scattering) {
   if (scattering.is_diagonal()) return scattering.reflectance;
   return scattering.reflectance + scattering.transmittance;
+}
+
+// These columns; nothing of nothing.
+Field columns_of(const FieldView& field, const std::vector<Eigen::Index>& columns) {
+  if (field.size() == 0) return field;
+  return field(Eigen::all, columns);
+}
+
+// The factor by which the lamps of band b are brighter than those of band a; nothing when there is no such factor.
+std::optional<double> factor_of(const RadiosityProblem& problem, Eigen::Index a, Eigen::Index b) {
+  if (!same_in_bands(problem.scattering, a, b)) return std::nullopt;
+  Eigen::Index brightest = 0;
+  const double of_a = problem.exitance.col(a).maxCoeff(&brightest);
+  const double factor = problem.exitance(brightest, b) / of_a;
+  const auto expected = factor * problem.exitance.col(a);
+  // Sixteen roundings: of sums and products of E, rho and H_direct, and of a quotient.
+  const auto rounding = 16 * std::numeric_limits<double>::epsilon() * expected;
+  const bool is_multiple = ((expected - problem.exitance.col(b)).abs() <= rounding).all();
+  return is_multiple ? std::optional(factor) : std::nullopt;
 }
 
 }  // namespace
@@ -69,7 +89,7 @@ Field irradiance_errors(const Scattering& scattering, const Field& error) {
   Field bound = (rho > 0).select(error / rho, unknown);
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> is_known = rho > 0;
   if (!scattering.is_diagonal()) {
-    // What |dB_i| = rho_i |dH_i| + t_i |dH_j| and |dB_j| say of |dH_i|: at most |dB_i| / rho_i, and |dB_j| / t_j.
+    // |dB_i| = rho_i |dH_i| + t_i |dH_j| bounds |dH_i| by |dB_i| / rho_i, and that of the other side by |dB_j| / t_j.
     const Field t = on_other_side(scattering, scattering.transmittance);
     bound = bound.min((t > 0).select(on_other_side(scattering, error) / t, unknown)).eval();
     is_known = is_known || t > 0;
@@ -99,12 +119,8 @@ Eigen::ArrayXd reflected_square(const Scattering& scattering, const Field& irrad
 }
 
 Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index>& bands) {
-  const auto chosen = [&bands](const Field& field) {
-    Field columns(field.rows(), static_cast<Eigen::Index>(field.size() > 0 ? bands.size() : 0));
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = field.col(bands[static_cast<std::size_t>(k)]);
-    return columns;
-  };
-  return {chosen(scattering.reflectance), scattering.other_side, chosen(scattering.transmittance)};
+  return {columns_of(scattering.reflectance, bands), scattering.other_side,
+          columns_of(scattering.transmittance, bands)};
 }
 
 bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b) {
@@ -116,6 +132,61 @@ SymmetricRoot::SymmetricRoot(const Scattering& scattering, const Eigen::VectorXd
     : radiosity_(scattering.reflectance.sqrt().colwise() / area.array().sqrt()),
       from_irradiance_(scattering.reflectance.sqrt().colwise() * area.array().sqrt()) {
   assert(scattering.is_diagonal());
+}
+
+SolvedBands solved_bands(const RadiosityProblem& problem) {
+  SolvedBands bands;
+  for (Eigen::Index band = 0; band < problem.exitance.cols(); ++band) {
+    if ((problem.exitance.col(band) == 0).all()) {
+      bands.sources.push_back({0, 0});
+      continue;
+    }
+    std::optional<double> factor;
+    Eigen::Index from = 0;
+    const auto solved = static_cast<Eigen::Index>(bands.solved.size());
+    while (from < solved && !(factor = factor_of(problem, bands.solved[static_cast<std::size_t>(from)], band))) ++from;
+    if (!factor) bands.solved.push_back(band);
+    bands.sources.push_back({from, factor.value_or(1)});
+  }
+  if (bands.solved.empty()) bands.solved.push_back(0);
+  return bands;
+}
+
+SolvedBands all_bands(const RadiosityProblem& problem) {
+  SolvedBands bands;
+  for (Eigen::Index band = 0; band < problem.exitance.cols(); ++band) {
+    bands.solved.push_back(band);
+    bands.sources.push_back({band, 1});
+  }
+  return bands;
+}
+
+Field reduced(const FieldView& field, const SolvedBands& bands) { return columns_of(field, bands.solved); }
+
+Field expanded(const FieldView& field, const SolvedBands& bands) {
+  if (field.size() == 0) return field;
+  Field all(field.rows(), static_cast<Eigen::Index>(bands.sources.size()));
+  for (Eigen::Index band = 0; band < all.cols(); ++band) {
+    const SolvedBands::Source& source = bands.sources[static_cast<std::size_t>(band)];
+    all.col(band) = source.factor * field.col(source.from);
+  }
+  return all;
+}
+
+Observer telling_all_bands(const Observer& observer, const SolvedBands& bands, const Field* more_irradiance) {
+  if (!observer) return {};
+  return [&observer, &bands, more_irradiance](const Progress& progress) {
+    if (!progress.irradiance) return observer(progress);
+    Progress all = progress;
+    const Field ambient = progress.ambient != nullptr ? expanded(*progress.ambient, bands) : Field();
+    all.irradiance = [&] {
+      Field irradiance = expanded(progress.irradiance(), bands);
+      if (more_irradiance != nullptr && more_irradiance->size() > 0) irradiance += *more_irradiance;
+      return irradiance;
+    };
+    all.ambient = progress.ambient != nullptr ? &ambient : nullptr;
+    return observer(all);
+  };
 }
 
 }  // namespace patchlight

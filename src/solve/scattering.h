@@ -7,9 +7,6 @@
 
 namespace patchlight {
 
-// What solvers and error bars ask of R beyond Scattering's own functions. Solvers know no more of R: the parents'
-// problem, squares in accuracy/, reports and files take rho as it is.
-
 /// (R H)_i of a diagonal R, one row, from `irradiance`, the row H_i: an expression that refers to both, for use at
 /// once.
 inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const Field& irradiance) {
@@ -22,14 +19,14 @@ Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradianc
 /// radiosity + R H
 Field plus_reflected(Field radiosity, const Scattering& scattering, const Field& irradiance);
 
-/// (1 - R) H: what is absorbed of an irradiance, W/m^2.
+/// (1 - R) H: the absorbed irradiance, W/m^2.
 Field absorb(const Scattering& scattering, const Field& irradiance);
 
 /// The irradiance H for which R H is `reflected`; that of `otherwise` where nothing is reflected, and on sheets.
 Field irradiance_behind(const Scattering& scattering, const Field& reflected, const Field& otherwise);
 
 /// How far irradiances may be off when radiosities are by `error`, |dB| = R |dH|, W/m^2; for patches that reflect
-/// nothing the largest of the others. On sheets the smaller of what either side tells.
+/// nothing the largest of the others. On sheets the smaller bound of both sides.
 Field irradiance_errors(const Scattering& scattering, const Field& error);
 
 /// R times an error of the irradiance, which may be infinite where it is not known: 0 of what reflects nothing.
@@ -65,5 +62,32 @@ class SymmetricRoot {
   Field radiosity_;        // D
   Field from_irradiance_;  // T
 };
+
+/// Which bands have to be solved: those without light have the solution 0, and of those with the same reflectances
+/// whose lamps differ by a factor one is enough.
+struct SolvedBands {
+  /// Where a band of the problem comes from: `factor` times the solved band `from`.
+  struct Source {
+    Eigen::Index from = 0;
+    double factor = 0;
+  };
+  std::vector<Eigen::Index> solved;  ///< bands of the problem; at least one
+  std::vector<Source> sources;       ///< one for each band of the problem
+};
+
+SolvedBands solved_bands(const RadiosityProblem& problem);
+
+/// Each band as it is.
+SolvedBands all_bands(const RadiosityProblem& problem);
+
+/// The columns of the solved bands; nothing of nothing.
+Field reduced(const FieldView& field, const SolvedBands& bands);
+
+/// All bands from the solved ones.
+Field expanded(const FieldView& field, const SolvedBands& bands);
+
+/// An observer of the solved bands that calls the one of all bands. `more_irradiance`, of all bands and in none of the
+/// solved ones, is added where it is given and not empty. Refers to all arguments.
+Observer telling_all_bands(const Observer& observer, const SolvedBands& bands, const Field* more_irradiance = nullptr);
 
 }  // namespace patchlight

@@ -4,12 +4,11 @@
 
 #include "base/vectors.h"
 #include "solve/iterations.h"
-#include "solve/krylov.h"
 #include "solve/pockets.h"
 #include "solve/scattering.h"
-#include "solve/solved_bands.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -65,8 +64,7 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
 // How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
 // best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
 Eigen::ArrayXd over_relaxation(const Eigen::ArrayXd& mean_reflectance) {
-  constexpr double next_eigenvalue = 0.7;
-  return 2 / (1 + (1 - (next_eigenvalue * mean_reflectance).square()).sqrt());
+  return 2 / (1 + (1 - (0.7 * mean_reflectance).square()).sqrt());
 }
 
 // What is shot of what is unshot and of what is expected to come.
@@ -171,12 +169,6 @@ Solution solution_by(Solver solver, Iterations iterations, const RowTransport* r
   return {};
 }
 
-// The field, and the light that comes from no patch.
-Field with_direct(Field irradiance, const RadiosityProblem& problem) {
-  if (problem.direct_irradiance.size() > 0) irradiance += problem.direct_irradiance;
-  return irradiance;
-}
-
 // The transport with single rows, if it has them.
 const RowTransport* rows_of(const TransportOperator& transport, Solver solver) {
   const auto* const rows = dynamic_cast<const RowTransport*>(&transport);
@@ -218,6 +210,12 @@ Field from_lamps(const TransportOperator& transport, const RowTransport* rows, c
   return irradiance;
 }
 
+// In the order of Solver.
+constexpr std::array solver_names = {"jacobi",      "gauss-seidel", "sor",          "symmetric-gauss-seidel",
+                                     "chebyshev",   "progressive",  "overshooting", "cg",
+                                     "deflated-cg", "gmres",        "bicgstab"};
+static_assert(solver_names.size() == static_cast<std::size_t>(Solver::bicgstab) + 1);
+
 // The light of the lamps, and nothing more: for a system without a solution.
 Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem& problem, std::string why) {
   Solution solution;
@@ -225,8 +223,7 @@ Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem&
   solution.direct_irradiance = transport.apply(problem.exitance);
   solution.irradiance = solution.direct_irradiance;
   solution.trapped = std::move(why);
-  const double unknown = std::numeric_limits<double>::infinity();
-  solution.history.push_back({.number = 0, .relative_residual = 1, .error_bound = unknown, .seconds = 0, .work = 1});
+  solution.history.push_back({.number = 0, .relative_residual = 1, .error_bound = no_bound, .seconds = 0, .work = 1});
   return solution;
 }
 
@@ -240,9 +237,8 @@ const Pockets* pockets_in(const TransportOperator& transport, const Scattering& 
 // What the patches of pockets send to each other at first arrives at them as direct irradiance does.
 Solution solved_around(const TransportOperator& transport, const Pockets& pockets, bool closed_are_dark,
                        RadiosityProblem problem, const SolverOptions& options, const Observer& observer) {
-  constexpr double share_of_tolerance = 0.01;
-  constexpr double least = 1e-9;  // of what rounding leaves of light that is reflected thousands of times
-  const double accuracy = std::max(least, share_of_tolerance * tolerance_of(options));
+  // Rounding leaves 1e-9 of light that is reflected thousands of times.
+  const double accuracy = std::max(1e-9, 0.01 * tolerance_of(options));
   const PocketTransport around(transport, pockets, problem.scattering, closed_are_dark, accuracy);
   const Field within = around.irradiance_within(problem.exitance);
   const Field by_lamps = transport.apply(problem.exitance);
@@ -264,7 +260,7 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   // No bound has more than what was wanted.
   if (around.farthest_off() > tolerance_of(options)) {
     solution.error.resize(0, 0);
-    solution.patch_bound = std::numeric_limits<double>::infinity();
+    solution.patch_bound = no_bound;
   }
   return solution;
 }
@@ -286,38 +282,12 @@ Solution solution_of(const TransportOperator& transport, const RadiosityProblem&
 }  // namespace
 
 std::vector<Solver> all_solvers() {
-  return {Solver::jacobi,      Solver::gauss_seidel, Solver::sor,          Solver::symmetric_gauss_seidel,
-          Solver::chebyshev,   Solver::progressive,  Solver::overshooting, Solver::cg,
-          Solver::deflated_cg, Solver::gmres,        Solver::bicgstab};
+  std::vector<Solver> all;
+  for (std::size_t k = 0; k < solver_names.size(); ++k) all.push_back(static_cast<Solver>(k));
+  return all;
 }
 
-const char* name_of(Solver solver) {
-  switch (solver) {
-    case Solver::jacobi:
-      return "jacobi";
-    case Solver::gauss_seidel:
-      return "gauss-seidel";
-    case Solver::sor:
-      return "sor";
-    case Solver::symmetric_gauss_seidel:
-      return "symmetric-gauss-seidel";
-    case Solver::chebyshev:
-      return "chebyshev";
-    case Solver::progressive:
-      return "progressive";
-    case Solver::overshooting:
-      return "overshooting";
-    case Solver::cg:
-      return "cg";
-    case Solver::deflated_cg:
-      return "deflated-cg";
-    case Solver::gmres:
-      return "gmres";
-    case Solver::bicgstab:
-      return "bicgstab";
-  }
-  return "";
-}
+const char* name_of(Solver solver) { return solver_names.at(static_cast<std::size_t>(solver)); }
 
 bool takes_rows(Solver solver) {
   return is_shooting(solver) || solver == Solver::gauss_seidel || solver == Solver::sor ||
@@ -341,8 +311,7 @@ Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area) { retu
 double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem) {
   const Eigen::ArrayXd error = area_norm(reference - radiosity, problem.area);
   const Eigen::ArrayXd size = area_norm(reference - problem.exitance, problem.area);
-  constexpr double rounding = 1e-14;
-  const Eigen::ArrayXd rounded = rounding * area_norm(reference, problem.area);
+  const Eigen::ArrayXd rounded = 1e-14 * area_norm(reference, problem.area);
   double worst = 0;
   for (Eigen::Index band = 0; band < error.size(); ++band) {
     // 0 / 0 is 0, but for rounding: nothing is wrong where there is nothing. What is not a number is worse than any.
@@ -383,7 +352,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
   }
   if (problem.direct_irradiance.size() == 0) return solution;
   solution.irradiance += problem.direct_irradiance;
-  solution.direct_irradiance = with_direct(from_lamps(transport, rows, problem.exitance), problem);
+  solution.direct_irradiance = from_lamps(transport, rows, problem.exitance) + problem.direct_irradiance;
   return solution;
 }
 

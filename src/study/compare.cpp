@@ -15,9 +15,6 @@
 namespace patchlight {
 namespace {
 
-// The reference is so much nearer to the solution than the solvers have to come.
-constexpr double margin = 1e-4;
-
 // Keeps the first ten iterates, then those whose number is a fifth higher, and the last.
 class Frames {
  public:
@@ -154,13 +151,12 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
                                   const SolverOptions& usual, const Observer& watch) {
     SolverOptions exact = usual;
     exact.solver = usual_solver(transport, problem);
-    exact.relative_error = std::max(1e-13, margin * options.relative_error);
+    exact.relative_error = std::max(1e-13, 1e-4 * options.relative_error);
     Solution reference = solve(transport, problem, exact, watch);
     comparison.reference_residual = reference.history.back().relative_residual;
     if (!reference.trapped.empty()) return reference;
-    constexpr int steps = 60;
     const Eigen::ArrayXd strongest_lamp = highest(problem.exitance);
-    const SpectralRadius radius = spectral_radius_with_error(transport, problem, steps);
+    const SpectralRadius radius = spectral_radius_with_error(transport, problem, 60);
     comparison.spectral_radius = largest((strongest_lamp > 0).select(radius.value, 0.0));
     comparison.spectral_radius_error = largest((strongest_lamp > 0).select(radius.error, 0.0));
     const ConvergenceTest test{options, reference.radiosity};

@@ -1,6 +1,5 @@
-#include "study/price.h"
-
 #include "base/rounded.h"
+#include "study/study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +10,12 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// What a bar takes for granted where errors are seen to fall more slowly, or not to fall.
+// A bar assumes this order where errors fall more slowly, or do not fall.
 constexpr double least_order = 0.5;
-
-// Below this share of the light nothing is worth a word.
-constexpr double least_error = 1e-6;
 
 // So many times fewer patches have edges of four times the length: the error of the reference, which is left out of
 // the ratio of errors, is small beside them.
 constexpr double far_coarser = 16;
-
-// The largest number of patches that is looked at beyond the finest mesh, as a multiple of its own.
-constexpr double farthest = 16;
 
 // (x1^p - 1) / (x2^p - 1), which grows with p; ln x1 / ln x2 at p = 0.
 double ratio_of_errors(double p, double ln_x1, double ln_x2) {
@@ -104,7 +97,7 @@ Price extrapolated(double error, const StudySweep& by_size, const StudyReference
   price.order = std::min(2.0, observed_order(by_size, patches_of(reference)));
   if (!(price.order > 0)) return price;
   const double more = std::pow((fine.error + reference.bar) / error, 2 / price.order);
-  if (!(more <= farthest)) return price;
+  if (!(more <= 16)) return price;
   const double growth = slope(cpu_seconds_of(fine), cpu_seconds_of(coarse),
                               static_cast<double>(fine.patches) / static_cast<double>(coarse.patches));
   price.finding = Finding::extrapolated;
@@ -153,7 +146,7 @@ std::string text_of(const Price& price, PatchIndex patches) {
 
 std::string limit_of(const ErrorParts& parts, double bar) {
   const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
-  if (!(largest > least_error)) return "nothing limits you";
+  if (!(largest > 1e-6)) return "nothing limits you";
   const std::string size = " (" + in_percent(largest, 2) + " of the light at the finest setting)";
   if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
   if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;

@@ -1,7 +1,6 @@
-#include "study/reference.h"
-
 #include "patchlight/base/error.h"
 
+#include "base/tolerances.h"
 #include "base/vectors.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
@@ -9,6 +8,7 @@
 #include "pipeline/first_mesh.h"
 #include "plan/memory.h"
 #include "solve/scattering.h"
+#include "study/study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,23 +20,13 @@
 namespace patchlight {
 namespace {
 
-// A size with nearly as many patches as the next finer one tells nothing.
-constexpr double too_many = 0.5;
-
-double longest_edge(const PatchCorners& corners) {
-  double longest = 0;
-  for (int k = 0; k < corners.count; ++k) {
-    const Point& from = corners.points[static_cast<std::size_t>(k)];
-    const Point& to = corners.points[static_cast<std::size_t>((k + 1) % corners.count)];
-    longest = std::max(longest, (to - from).norm());
-  }
-  return longest;
-}
-
 // Patches with a longer edge are cut into four; edges are at most twice as long.
 PatchMesh cut_to(const PatchMesh& mesh, double max_edge) {
   std::vector<std::uint8_t> marked(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) marked[i] = longest_edge(mesh.corner_points(i)) > max_edge * (1 + 1e-9);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const double longest = std::sqrt(longest_edge_squared(mesh.corner_points(i)));
+    marked[i] = longest > max_edge * (1 + tolerance_of_shapes);
+  }
   return refine(mesh, marked).mesh;
 }
 
@@ -73,42 +63,7 @@ void require_memory_for_reference(std::size_t patches, const Request& request, c
   }
 }
 
-}  // namespace
-
-NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
-  Plan plan = make_plan(scene, request);
-  const double patches = open_patches(scene, plan, plan.max_edge).size();
-  plan.contacts.of_edge = 0.5;  // as meshes with error bars have it, which the largest patches are the parents of
-  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, patches, sizes);
-  std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
-  NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
-  require_memory_for_reference(result.finer.mesh.size(), request, plan);
-  all.pop_back();
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const bool last = k + 1 == all.size();
-    if (!last && all[k].mesh.size() > too_many * all[k + 1].mesh.size()) continue;
-    result.sizes.push_back(std::move(all[k]));
-  }
-  return result;
-}
-
-PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other) {
-  constexpr double quarter = 0.25 * (1 + 1e-6);
-  const PatchLookup lookup(other);
-  for (;;) {
-    std::vector<std::uint8_t> cut(mesh.size(), 0);
-    for (PatchIndex i = 0; i < mesh.size(); ++i) {
-      const auto there = lookup.patch_at(mesh.polygon[i], mesh.side[i], mesh.centroid[i]);
-      cut[i] = there && mesh.area[i] > quarter * other.area[*there] ? 1 : 0;
-    }
-    if (std::count(cut.begin(), cut.end(), 1) == 0) return mesh;
-    mesh = refine(mesh, cut).mesh;
-  }
-}
-
-namespace {
-
-// What the reference holds within each patch of a mesh.
+// The means of the reference over each patch of a mesh.
 struct Means {
   Field radiosity;
   Field spread;  // variance about it
@@ -134,12 +89,41 @@ Means means_over(const Simulation& simulation, const Reference& reference) {
 
 }  // namespace
 
+NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes) {
+  Plan plan = make_plan(scene, request);
+  const double patches = open_patches(scene, plan, plan.max_edge).size();
+  plan.contacts.of_edge = 0.5;  // as meshes with error bars have it, which the largest patches are the parents of
+  const double finest = request.mesh.max_edge ? plan.max_edge : edge_for(scene, plan, patches, sizes);
+  std::vector<SizedMesh> all = all_sizes(scene, plan, finest / 2, sizes + 1);
+  NestedSizes result{{}, std::move(all.back()), all.front().max_edge};
+  require_memory_for_reference(result.finer.mesh.size(), request, plan);
+  all.pop_back();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool last = k + 1 == all.size();
+    if (!last && all[k].mesh.size() > 0.5 * all[k + 1].mesh.size()) continue;
+    result.sizes.push_back(std::move(all[k]));
+  }
+  return result;
+}
+
+PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other) {
+  const PatchLookup lookup(other);
+  for (;;) {
+    std::vector<std::uint8_t> cut(mesh.size(), 0);
+    for (PatchIndex i = 0; i < mesh.size(); ++i) {
+      const auto there = lookup.patch_at(mesh.polygon[i], mesh.side[i], mesh.centroid[i]);
+      cut[i] = there && mesh.area[i] > 0.25 * (1 + tolerance_of_coordinates) * other.area[*there] ? 1 : 0;
+    }
+    if (std::count(cut.begin(), cut.end(), 1) == 0) return mesh;
+    mesh = refine(mesh, cut).mesh;
+  }
+}
+
 Reference reference_from(const Simulation& finer) {
   return {std::nullopt, finer.mesh, finer.problem, finer.solution.radiosity};
 }
 
 std::optional<Spectrum> furnace_radiosity(const RadiosityProblem& problem) {
-  constexpr double tolerance = 1e-9;
   const Field absorbed = absorb(problem.scattering, Field::Ones(problem.exitance.rows(), problem.exitance.cols()));
   const Eigen::ArrayXd absorbed_sum = sum_over_patches(absorbed);
   const Eigen::ArrayXd exitance_sum = sum_over_patches(problem.exitance);
@@ -149,7 +133,7 @@ std::optional<Spectrum> furnace_radiosity(const RadiosityProblem& problem) {
   }
   const Field expected = absorbed.rowwise() * c;
   const Field difference = (problem.exitance - expected).abs();
-  const bool holds = ((difference.rowwise() - tolerance * c) <= 0).all();
+  const bool holds = ((difference.rowwise() - tolerance_of_shapes * c) <= 0).all();
   return holds && (c > 0).any() ? std::optional(c) : std::nullopt;
 }
 

@@ -6,8 +6,6 @@
 #include "base/vectors.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
-#include "study/price.h"
-#include "study/reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,37 +54,13 @@ StudySetting setting_of(const Simulation& simulation) {
   return setting;
 }
 
-}  // namespace
-
-StudySetting judged(const Simulation& simulation, const Reference& reference) {
-  StudySetting setting = setting_of(simulation);
-  const Discrepancy found = discrepancy(simulation, reference);
-  setting.error = found.of_means;
-  setting.display_error = found.of_display;
-  setting.own_error = found.of_means;
-  return setting;
-}
-
-StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own) {
-  StudySetting setting = judged(simulation, reference);
-  setting.own_error = relative_error(own, simulation.solution.radiosity, simulation.problem);
-  return setting;
-}
-
-namespace {
-
 // The finest setting, solved to several tolerances on one matrix.
 struct Tolerances {
   std::vector<Simulation> runs;  // from loose to tight; the last one is the finest setting
   Field exact;                   // radiosity, to a hundredth of the last tolerance
 };
 
-// Estimators are compared so many sizes below the finest, with about a sixteenth of the patches; on so few pairs they
-// differ as on many.
-constexpr std::size_t coarser_sizes = 2;
-// The hemisphere's samples are rays of a patch, not of a pair.
-constexpr int hemisphere_factor = 64;
-// What all of a sweep's samples are compared with has so many times more than the largest number of them.
+// The run that a sweep of samples is compared with has so many times more than the largest number of them.
 constexpr int finer_samples = 4;
 
 std::vector<double> tolerances_for(double finest) {
@@ -212,10 +186,11 @@ StudySweep adaptive_sweep(const std::vector<Simulation>& solved, const Reference
   return sweep;
 }
 
-// The estimators of form factors on a small mesh, which do not compete.
+// The estimators of form factors on a small mesh, which do not compete: two sizes below the finest, with about a
+// sixteenth of the patches, they differ as on many.
 std::vector<StudySweep> estimator_sweeps(const Experiment& experiment, const Reference& reference) {
   const std::vector<SizedMesh>& sizes = experiment.meshes.sizes;
-  const SizedMesh& mesh = sizes[sizes.size() - 1 - std::min(coarser_sizes, sizes.size() - 1)];
+  const SizedMesh& mesh = sizes[sizes.size() - 1 - std::min<std::size_t>(2, sizes.size() - 1)];
   Request asked = experiment.request;
   const int usual = asked.assembly.samples;
   asked.assembly.samples = finer_samples * 16 * usual;
@@ -226,7 +201,8 @@ std::vector<StudySweep> estimator_sweeps(const Experiment& experiment, const Ref
     StudySweep sweep{std::string("estimator ") + name_of(estimator), Swept::samples, {}, false};
     asked.assembly.estimator = estimator;
     for (const int factor : {1, 4, 16}) {
-      asked.assembly.samples = factor * usual * (estimator == Estimator::hemisphere ? hemisphere_factor : 1);
+      // The hemisphere's samples are rays of a patch, not of a pair.
+      asked.assembly.samples = factor * usual * (estimator == Estimator::hemisphere ? 64 : 1);
       sweep.settings.push_back(judged(experiment.run(mesh, asked), reference, own));
     }
     sweeps.push_back(std::move(sweep));
@@ -325,6 +301,21 @@ ReferenceSolution reference_solution(const Experiment& experiment, const Simulat
 }
 
 }  // namespace
+
+StudySetting judged(const Simulation& simulation, const Reference& reference) {
+  StudySetting setting = setting_of(simulation);
+  const Discrepancy found = discrepancy(simulation, reference);
+  setting.error = found.of_means;
+  setting.display_error = found.of_display;
+  setting.own_error = found.of_means;
+  return setting;
+}
+
+StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own) {
+  StudySetting setting = judged(simulation, reference);
+  setting.own_error = relative_error(own, simulation.solution.radiosity, simulation.problem);
+  return setting;
+}
 
 double seconds_of(const StudySetting& setting) {
   double sum = 0;

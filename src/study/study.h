@@ -2,13 +2,64 @@
 
 #include "patchlight/simulate.h"
 
-#include "study/reference.h"
-
+#include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace patchlight {
+
+/// A mesh of which no edge is longer.
+struct SizedMesh {
+  double max_edge = 0;  ///< metres
+  PatchMesh mesh;
+};
+
+/// Meshes each of which is cut from the one before, so that means over the patches of all can be taken from the last
+/// without an error of their own: where a reference's patches reach over the edge of another patch, it would be off by
+/// as much as they are large. Longest edges are halved each time, so that there are about four times the patches; what
+/// would have more than half the patches of the next one is left out.
+struct NestedSizes {
+  std::vector<SizedMesh> sizes;  ///< from coarse to fine; the last one is about what the request asks for
+  SizedMesh finer;               ///< with half the edges
+  double coarsest_edge = 0;      ///< with which the scene is tessellated; metres
+};
+
+/// `sizes` sizes at most. \throws MemoryError when the finer mesh would not fit.
+NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes);
+
+/// The mesh, cut until a patch has no more than a quarter of the area of the one of `other` at its centre. Both are cut
+/// from one tessellation: so each patch lies in one of `other`.
+PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other);
+
+/// What the errors of a solution are measured against.
+struct Reference {
+  std::optional<Spectrum> uniform;  ///< the closed form: the radiosity of every patch, W/m^2
+  PatchMesh mesh;                   ///< where there is none: a finer solution, constant on each of its patches
+  RadiosityProblem problem;
+  Field radiosity;  ///< W/m^2
+};
+
+/// A finer solution of the same scene and sides.
+Reference reference_from(const Simulation& finer);
+
+/// The radiosity c that every patch would have in a closed room, where E = c (1 - rho) on all of them (the furnace): B
+/// = c (1 - rho) + rho c. Nothing where that does not hold within 1e-9 of c. Whether the room is closed is for the
+/// caller to see.
+std::optional<Spectrum> furnace_radiosity(const RadiosityProblem& problem);
+
+/// How far a solution is from the reference, as shares of the norm of the reflected light ||B_ref - E||_A, in the worst
+/// band.
+struct Discrepancy {
+  double of_means = 0;    ///< of the means over its patches: relative_error()
+  double of_display = 0;  ///< of the field that is constant on each patch: with the spread of the reference within them
+  Eigen::VectorXd squares;  ///< per patch, of_means^2 is their sum
+};
+
+/// The spread within a patch that the reference, n_ref patches itself, cannot show is made up for: fields vary about
+/// linearly in a patch, so that it sees 1 - n / n_ref of the squares.
+Discrepancy discrepancy(const Simulation& simulation, const Reference& reference);
 
 /// One way of solving a scene: what it costs and how good it is. Errors are shares of the reflected light, NaN where
 /// they are not known.
@@ -97,5 +148,51 @@ Study study(const Scene& scene, const Request& request, const StudyOptions& opti
 /// Wall-clock and processor seconds from the mesh to the solution.
 double seconds_of(const StudySetting& setting);
 double cpu_seconds_of(const StudySetting& setting);
+
+/// The power p with which an error falls with the edge of the patches: e1 / e2 = (h1 / h2)^p from `coarse` to `fine`.
+/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall,
+/// or where the edges of `fine` are less than four times as long as those of the reference.
+double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
+
+/// The sweep with its orders filled in.
+StudySweep with_orders(StudySweep sweep, double reference_patches);
+
+/// The error of a reference: Richardson's extrapolation from its difference to the finest setting of a sweep of
+/// patches. The order is the observed one, at least 1/2 and at most 2: from plain ratios of errors where two settings
+/// are far coarser than the reference, else with the error of the reference in the model.
+double richardson_bar(const StudySweep& by_size, double reference_patches);
+
+/// The number of patches that its mesh has at least the fineness of a uniform one of; infinite for the closed form.
+double patches_of(const StudyReference& reference);
+
+/// Which of some points (cost, error) are on the Pareto front: no other one is at least as good in both and better in
+/// one.
+std::vector<bool> pareto_front(const std::vector<std::array<double, 2>>& points);
+
+/// The study with the fronts of all settings that compete marked.
+Study with_fronts(Study study);
+
+/// How a price was found.
+enum class Finding {
+  interpolated,  ///< between two settings of the front, in logarithms
+  at_most,       ///< the cheapest setting is good enough
+  extrapolated,  ///< beyond the finest mesh, by the observed order, no farther than 16 times its patches
+  not_reached,   ///< farther, or no order is known
+  not_known      ///< the reference's own error is as large
+};
+
+/// What an error costs.
+struct Price {
+  double error = 0;  ///< asked for
+  Finding finding = Finding::not_reached;
+  double cpu_seconds = 0;
+  double order = 0;  ///< by which it was extrapolated
+};
+
+/// The reference's bar counts as part of every error.
+Price price_of(double error, const Study& study);
+
+/// The study in a sentence: "1 % costs 2.1 CPU seconds here, 0.3 % about 19 (...); what limits you is ...".
+std::string conclusion(const Study& study);
 
 }  // namespace patchlight

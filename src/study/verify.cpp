@@ -6,6 +6,7 @@
 #include "accuracy/spaces.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "base/vectors.h"
 #include "pipeline/relative_errors.h"
 #include "plan/planned_scene.h"
@@ -14,6 +15,7 @@
 #include "solve/scattering.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cassert>
 #include <cmath>
@@ -43,21 +45,13 @@ Field variance_of(const PathEstimate& paths) {
   return (paths.irradiance == 0).select(of_none.replicate(noise.rows(), 1), noise);
 }
 
-Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) {
-  Field chosen(static_cast<Eigen::Index>(rows.size()), field.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = field.row(rows[k]);
-  return chosen;
-}
+Field rows_at(const Field& field, const std::vector<Eigen::Index>& rows) { return field(rows, Eigen::all); }
 
-// What tells random numbers of one purpose from those of another.
+// A stream of random numbers.
 struct Drawing {
   std::uint64_t seed = 1;
   std::uint64_t purpose = 0;
 };
-
-// Of the mean irradiance: less on a side that was left out does not count.
-constexpr double least_light = 1e-3;
-constexpr double most_deviation = 3;  // standard errors
 
 // Front and back of every polygon take part, and emit as ever.
 KeptSides all_sides(const Scene& scene, const KeptSides& kept) {
@@ -130,18 +124,15 @@ std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kep
     LeftOutSide& side = sides[k];
     side.irradiance = paths.irradiance.row(static_cast<Eigen::Index>(k));
     side.standard_error = paths.standard_error.row(static_cast<Eigen::Index>(k));
-    side.is_lit = (side.irradiance > (most_deviation * side.standard_error).max(least_light * mean)).any();
+    side.is_lit = (side.irradiance > (3 * side.standard_error).max(1e-3 * mean)).any();
   }
   return sides;
 }
 
-// Rooms and sensors get more paths each than patches do, up to so many, as long as there are few of them.
-constexpr std::size_t max_paths = std::size_t{1} << 16U;
-
-// A total shared by some receivers, no less than a patch gets.
+// A total shared by rooms or sensors: 2^16 paths each at most, no fewer than a patch gets.
 std::uint32_t paths_each(const VerifyOptions& options, double shares_of_patches, std::size_t receivers) {
   const double total = shares_of_patches * static_cast<double>(options.checked * options.paths);
-  const double each = std::min<double>(max_paths, total / static_cast<double>(receivers));
+  const double each = std::min<double>(1 << 16, total / static_cast<double>(receivers));
   return std::max(options.paths, static_cast<std::uint32_t>(each));
 }
 
@@ -370,9 +361,8 @@ bool is_by_noise(const Verification& verification) {
   double all = 0;
   const auto add = [&](const SolvedAndTraced& compared) {
     const Field squares = deviations(compared).square();
-    constexpr double share = 0.2;
     const bool has_enough = compared.paths.paths >= enough_paths;
-    noisy += has_enough ? 0 : (compared.paths.standard_error > share * compared.bar).select(squares, 0).sum();
+    noisy += has_enough ? 0 : (compared.paths.standard_error > 0.2 * compared.bar).select(squares, 0).sum();
     all += squares.sum();
   };
   add(verification);
@@ -432,15 +422,7 @@ Field deviations_by_noise(const SolvedAndTraced& compared) {
 }
 
 const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::agrees:
-      return "agrees";
-    case Verdict::disagrees:
-      return "disagrees";
-    case Verdict::inconclusive:
-      return "inconclusive";
-  }
-  return "";
+  return std::array{"agrees", "disagrees", "inconclusive"}.at(static_cast<std::size_t>(verdict));
 }
 
 Field irradiance_bar(const Simulation& simulation, double relative) {
@@ -461,7 +443,7 @@ Verification verify(const Scene& scene, const Simulation& simulation, const Fiel
   if (!is_by_noise(first)) return first;
   // Again on the same patches, rooms and sensors, with other paths.
   Verification again = compared(scene, simulation, bar, regions, patches, with_more_paths(options),
-                                hash({options.seed, 0x61676169}), observer);
+                                hash({options.seed, stream::repeated_comparison}), observer);
   again.first_paths = first.paths.paths;
   return again;
 }

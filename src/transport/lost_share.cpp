@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/patch_keys.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

@@ -1,4 +1,4 @@
-#include "validate/closed_forms.h"
+#include "validate/validate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -43,3 +43,30 @@ std::vector<ValidationCase> validation_cases();
 std::vector<ValidationResult> validate(std::span<const ValidationCase> cases, const Observer& observer = {});
 
 }  // namespace patchlight
+
+// Configuration factors of Howell's catalogue, by their numbers there. Lengths in one unit.
+namespace patchlight::validation {
+
+/// C-11: from a rectangle of a x b to its equal, directly opposed at distance c.
+double opposed_rectangles(double a, double b, double c);
+
+/// C-14: from a rectangle of width w to one of height h at a right angle; l is the length of the edge they share.
+double perpendicular_rectangles(double w, double h, double l);
+
+/// C-16: the same at an included angle in radian, above 0 and below pi.
+double angled_rectangles(double w, double h, double l, double angle);
+
+/// C-41: from a disc of radius r1 to a parallel coaxial one of radius r2 at distance h.
+double coaxial_discs(double r1, double r2, double h);
+
+/// C-91: from the inside of a cylinder of radius r2 to a coaxial one of radius r1 < r2 in it; both have the length h.
+double coaxial_cylinders(double r1, double r2, double h);
+
+/// B-3: from an element to a parallel rectangle of a x b at distance c, one corner of which is right above the element.
+double element_to_parallel_rectangle(double a, double b, double c);
+
+/// B-4: from an element to a rectangle at a right angle, b wide and a high, that stands on the element's plane at
+/// distance c; its foot begins where the element's normal to it meets it.
+double element_to_perpendicular_rectangle(double a, double b, double c);
+
+}  // namespace patchlight::validation

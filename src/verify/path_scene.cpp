@@ -1,6 +1,7 @@
 #include "verify/path_scene.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "light/texture.h"
 #include "scene/coverings.h"
 #include "scene/specular_faces.h"
@@ -16,7 +17,7 @@
 namespace patchlight {
 namespace {
 
-// What clear materials are, each once.
+// The panes of each material.
 struct Panes {
   std::vector<std::vector<Pane>> panes;
   std::vector<Spectrum> held;
@@ -64,6 +65,20 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
   return surface;
 }
 
+Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections) {
+  const Panes panes = panes_of_materials(scene, reflections);
+  Surfaces surfaces;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back})
+      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept, reflections));
+  }
+  return surfaces;
+}
+
+bool scatters(const Surface& surface) {
+  return (surface.reflectance > 0).any() || (surface.exitance > 0).any() || (surface.scattered_through > 0).any();
+}
+
 }  // namespace
 
 Spectrum reflectance_at(const Surface& surface, const Point& point) {
@@ -86,20 +101,6 @@ Spectrum relative_held(const Surface& surface, double cosine) {
   const Spectrum onward = transmittance(surface, cosine) + specular_reflectance(surface, cosine);
   return onward.unaryExpr(&held_of) / surface.held;
 }
-
-namespace {
-
-Surfaces surfaces_of(const Scene& scene, const KeptSides& kept, Reflections reflections = Reflections::kept) {
-  const Panes panes = panes_of_materials(scene, reflections);
-  Surfaces surfaces;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const Side side : {Side::front, Side::back})
-      surfaces.sides.push_back(surface_of(scene, panes, {p, side}, kept, reflections));
-  }
-  return surfaces;
-}
-
-}  // namespace
 
 Eigen::Matrix3d frame_around(const Vector& normal) {
   const Vector tangent = normal.unitOrthogonal();
@@ -157,15 +158,41 @@ Point PathScene::beyond(const Point& from, const Vector& direction) const {
   return from + (extent() + (from - bounds_.center()).norm()) * direction;
 }
 
+RayEnd walk_to_end(const PathScene& scene, std::optional<Hit> hit, const Vector& direction, std::uint32_t seed) {
+  RayEnd end{std::move(hit), direction, Spectrum::Ones(scene.bands())};
+  // Rays between ideal mirrors may never end.
+  for (std::uint64_t meeting = 0; end.hit && meeting < 4096; ++meeting) {
+    const Hit met = *end.hit;
+    const Surface& surface = scene.surfaces().at(met.polygon, met.side);
+    if (!surface.is_specular) break;
+    const double cosine = surface.normal.dot(met.direction);
+    const Spectrum through = transmittance(surface, cosine);
+    const Spectrum mirrored = specular_reflectance(surface, cosine);
+    // Where nothing is scattered, the first four meetings reduce the weight; from then on a ray may end.
+    const bool may_end = scatters(surface) || meeting >= 4;
+    const double ends = may_end ? std::max(0.0, 1 - through.mean() - mirrored.mean()) : 0;
+    const double sum = through.mean() + mirrored.mean() + ends;
+    const double drawn = sum * uniform({seed, meeting, stream::path_vertices});
+    if (drawn >= through.mean() + mirrored.mean()) {
+      end.factor *=
+          ends > 0 ? Spectrum(relative_held(surface, cosine) * (sum / ends)) : Spectrum(Spectrum::Zero(scene.bands()));
+      break;
+    }
+    const bool is_mirrored = drawn >= through.mean();
+    end.factor *= (is_mirrored ? mirrored / mirrored.mean() : through / through.mean()) * sum;
+    if (is_mirrored) end.direction = mirrored_direction(surface.normal, end.direction);
+    const Ray onward{met.point, end.direction, met.polygon};
+    end.hit = scene.faces().first_hits({&onward, 1}).front();
+    if (!end.hit) break;
+    end.hit->distance += met.distance;
+    end.hit->reflections = met.reflections + (is_mirrored ? 1 : 0);
+  }
+  return end;
+}
+
 namespace {
 
 constexpr std::uint32_t rays_per_point = 8;
-
-// Slope of the rays around the horizon.
-constexpr double grazing_slope = 1e-3;
-
-// A face lies against the receiver when it is so near to it, as a share of the scene's extent.
-constexpr double contact = 1e-5;
 
 struct VisibilityTest {
   const Occluder& occluder;
@@ -173,7 +200,7 @@ struct VisibilityTest {
   const PathReceiver& receiver;
   Vector normal;
   Eigen::Matrix3d frame;
-  double reach;  // metres within which a face lies against the receiver
+  double reach;  // meters within which a face lies against the receiver: 1e-5 of the scene's extent
 
   bool looks_out(const Ray& ray) const;
   std::vector<Ray> rays_from(const Point& point, std::uint32_t seed) const;
@@ -183,12 +210,12 @@ struct VisibilityTest {
 bool VisibilityTest::looks_out(const Ray& ray) const {
   const auto hit = occluder.first_hits({&ray, 1}).front();
   if (hit) return surfaces.at(hit->polygon, hit->side).kept;
-  // What lies in the receiver's plane is met only from a little behind.
+  // A face in the receiver's plane is met only from a little behind.
   Ray from_behind = ray;
   from_behind.origin -= reach * normal;
   const auto second = occluder.first_hits({&from_behind, 1}).front();
   if (!second || second->distance * ray.direction.dot(normal) >= 2 * reach) return true;
-  // What the receiver lies over is met from behind.
+  // The receiver may lie over the face: then the ray meets it from behind.
   const Side other = second->side == Side::front ? Side::back : Side::front;
   return occluder.lies_over(receiver.polygon, second->polygon, other);
 }
@@ -200,7 +227,7 @@ std::vector<Ray> VisibilityTest::rays_from(const Point& point, std::uint32_t see
   }
   for (std::uint32_t k = 0; k < rays_per_point; ++k) {
     const double azimuth = 2 * std::numbers::pi * k / rays_per_point;
-    const Vector direction = Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope).normalized();
+    const Vector direction = Vector(std::cos(azimuth), std::sin(azimuth), 1e-3).normalized();
     rays.push_back({point, frame * direction, receiver.polygon});
   }
   return rays;
@@ -212,7 +239,7 @@ std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surf
                                   std::span<const Point> points, std::uint64_t seed) {
   const Vector normal = surfaces.at(receiver.polygon, receiver.side).normal;
   const VisibilityTest visibility{
-      occluder, surfaces, receiver, normal, frame_around(normal), contact / occluder.frame().scale};
+      occluder, surfaces, receiver, normal, frame_around(normal), 1e-5 / occluder.frame().scale};
   std::vector<std::uint8_t> result;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const bool under_another = occluder.is_covered(receiver.polygon, receiver.side, points[k]);

@@ -5,6 +5,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
+#include "base/sampling.h"
 #include "light/pane.h"
 #include "scene/specular_faces.h"
 #include "visibility/occluder.h"
@@ -12,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,6 +66,11 @@ struct Surfaces {
 /// An orthonormal frame whose third axis is the normal.
 Eigen::Matrix3d frame_around(const Vector& normal);
 
+/// A direction after its reflection at a plane.
+inline Vector mirrored_direction(const Vector& normal, const Vector& direction) {
+  return direction - 2 * normal.dot(direction) * normal;
+}
+
 /// The geometry and the surfaces that paths meet. Immutable; shared by all parts of the path tracer.
 class PathScene {
  public:
@@ -81,7 +88,7 @@ class PathScene {
   const Surfaces& surfaces() const { return surfaces_; }
   Eigen::Index bands() const { return bands_; }
 
-  /// The diagonal of the bounds, metres.
+  /// The diagonal of the bounds, meters.
   double extent() const { return bounds_.diagonal().norm(); }
 
  private:
@@ -96,6 +103,20 @@ class PathScene {
   std::size_t polygons_;
   Eigen::Index bands_;
 };
+
+/// A random number of (0, 1) for these counters.
+inline double uniform(std::initializer_list<std::uint64_t> counters) { return (hash(counters) + 0.5) * 0x1p-32; }
+
+/// The end of a ray that mirrors and clear polygons may have sent on.
+struct RayEnd {
+  std::optional<Hit> hit;  ///< none if the ray leaves the scene
+  Vector direction;        ///< unit, at its end
+  Spectrum factor;         ///< of the light from there
+};
+
+/// Follows a ray from its first hit through mirrors and clear polygons, one of its ways at each: it goes through, is
+/// reflected, or ends to be scattered, in proportion to the mean shares of these.
+RayEnd walk_to_end(const PathScene& scene, std::optional<Hit> hit, const Vector& direction, std::uint32_t seed);
 
 /// For each point of a receiver 1 when it is exposed, 0 when it is covered: inside a solid, or against another face. A
 /// point is covered when another polygon lies over it in its plane, or when each of eight cosine-distributed rays and

@@ -26,10 +26,11 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
+#include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/triangulate.h"
 #include "verify/delta_sources.h"
-#include "verify/mirror_images.h"
 #include "verify/path_scene.h"
 
 #include <algorithm>
@@ -52,7 +53,7 @@ namespace {
 
 // A piece of an emitting side.
 struct LampTriangle {
-  std::array<Point, 3> corners;
+  Triangle corners;
   PolygonIndex polygon = 0;
   Side side = Side::front;
 };
@@ -64,7 +65,7 @@ struct LampPoint {
   Side side = Side::front;
 };
 
-// All that emits, to be sampled by area: each square metre in proportion to its exitance, mean of the bands.
+// All that emits, to be sampled by area: each square meter in proportion to its exitance, mean of the bands.
 struct Lamps {
   std::vector<LampTriangle> triangles;
   std::vector<double> flux_before;  // of the triangles before each, mean of the bands, W
@@ -74,22 +75,20 @@ struct Lamps {
 Lamps lamps_of(const Scene& scene, const Surfaces& surfaces) {
   Lamps lamps;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const std::vector<Point> points = corner_points(scene, p);
     for (const Side side : {Side::front, Side::back}) {
       const double exitance = surfaces.at(p, side).exitance.mean();
       if (!(exitance > 0)) continue;
-      for (const auto& [a, b, c] : triangulate(points)) {
-        lamps.triangles.push_back({{points[a], points[b], points[c]}, p, side});
+      for (const Triangle& corners : triangles_of(corner_points(scene, p))) {
+        lamps.triangles.push_back({corners, p, side});
         lamps.flux_before.push_back(lamps.flux);
-        lamps.flux += exitance * (points[b] - points[a]).cross(points[c] - points[a]).norm() / 2;
+        lamps.flux += exitance * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
       }
     }
   }
   return lamps;
 }
 
-// The point that belongs to (u, v) in the unit square: the density of points is sampling_density(). There must be a
-// lamp.
+// The point of (u, v) in the unit square, with the density sampling_density(). There must be a lamp.
 LampPoint sample(const Lamps& lamps, double u, double v) {
   assert(lamps.flux > 0);
   // The triangle whose share of the flux holds u, which is stretched over that share to be used again.
@@ -107,12 +106,6 @@ LampPoint sample(const Lamps& lamps, double u, double v) {
 
 // The density with which points of a surface are sampled, 1/m^2.
 double sampling_density(const Lamps& lamps, const Surface& surface) { return surface.exitance.mean() / lamps.flux; }
-
-constexpr double share_of_polygon = 1e-5;
-constexpr double share_of_scene = 1e-6;
-
-// A sensor on a polygon is read at this share of the scene's extent before it: the ray caster resolves half of that.
-constexpr double height_share = 2e-9;
 
 // A polygon, and the distance within which a sensor lies on it.
 struct Surround {
@@ -146,14 +139,15 @@ bool Surround::touches(const Point& point) const {
 }
 
 // The points from which sensors are read. A sensor lies on a polygon if it is nearer than 1e-5 of the polygon's size
-// or 1e-6 of the scene's. It is then moved just in front of the side that it faces along. O(sensors x corners).
+// or 1e-6 of the scene's. It is then moved in front of the side that it faces along, by 2e-9 of the scene's extent: the
+// ray caster resolves half of that. O(sensors x corners).
 std::vector<Point> points_before_polygons(const Scene& scene, std::span<const Sensor> sensors) {
   const double extent = extent_of(scene);
   std::vector<Surround> polygons;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     Surround polygon{corner_points(scene, p), front_normal(scene, p), {}, 0};
     for (const Point& corner : polygon.corners) polygon.box.extend(corner);
-    polygon.tolerance = std::max(share_of_polygon * polygon.box.diagonal().norm(), share_of_scene * extent);
+    polygon.tolerance = std::max(1e-5 * polygon.box.diagonal().norm(), tolerance_of_coordinates * extent);
     polygons.push_back(std::move(polygon));
   }
   std::vector<Point> points(sensors.size());
@@ -162,20 +156,11 @@ std::vector<Point> points_before_polygons(const Scene& scene, std::span<const Se
     for (const Surround& polygon : polygons) {
       if (!polygon.touches(points[k])) continue;
       const double facing = polygon.normal.dot(sensors[k].normal) < 0 ? -1 : 1;
-      points[k] +=
-          (facing * height_share * extent - polygon.normal.dot(points[k] - polygon.corners[0])) * polygon.normal;
+      points[k] += (facing * 2e-9 * extent - polygon.normal.dot(points[k] - polygon.corners[0])) * polygon.normal;
     }
   });
   return points;
 }
-
-// A path may go on for ever between surfaces that absorb nothing.
-constexpr double highest_survival = 0.9999;
-
-// After so many bounces one vertex of 16 sends shadow rays to luminaires and sun, with 16 times the weight: paths
-// between white faces have thousands of vertices.
-constexpr std::uint64_t many_bounces = 32;
-constexpr double asked_of_many = 1.0 / 16;
 
 // A place where light arrives on its way to the receiver.
 struct Vertex {
@@ -193,7 +178,7 @@ struct PathSeed {
   std::uint64_t seed = 0;
 };
 
-// What a batch of paths has found, or a step of it.
+// The light of a batch of paths.
 struct Batch {
   Spectrum irradiance;  // sum over paths, W/m^2
   std::uint32_t exposed = 0;
@@ -227,18 +212,18 @@ std::uint32_t shuffled_index(std::uint32_t k, std::uint32_t count, std::uint32_t
 Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
   const Samples ordered = scrambled_sobol(count, seed);
   Samples shuffled(count);
-  for (std::uint32_t k = 0; k < count; ++k) shuffled[k] = ordered[shuffled_index(k, count, hash({seed, 4}))];
+  for (std::uint32_t k = 0; k < count; ++k)
+    shuffled[k] = ordered[shuffled_index(k, count, hash({seed, stream::path_order}))];
   return shuffled;
 }
 
 // One for each vertex. Where few of the paths are left, strata say nothing any more: their numbers are independent, and
 // cost no more than these paths do, however long some are.
 Samples samples_at(const std::vector<Vertex>& vertices, std::uint32_t paths, std::uint32_t seed) {
-  constexpr std::size_t few = 8;  // one in so many
   Samples samples(vertices.size());
-  if (few * vertices.size() < paths) {
+  if (8 * vertices.size() < paths) {
     for (std::size_t k = 0; k < vertices.size(); ++k)
-      for (std::size_t d = 0; d < 4; ++d) samples[k][d] = uniform({seed, vertices[k].path, 6 + d});
+      for (std::size_t d = 0; d < 4; ++d) samples[k][d] = uniform({seed, vertices[k].path, stream::path_vertices + d});
     return samples;
   }
   const Samples of_paths = shuffled_samples(paths, seed);
@@ -282,10 +267,11 @@ class PathTracer {
 // Points spread over the exposed part of the receiver.
 std::vector<Vertex> PathTracer::starts(const PathReceiver& receiver, std::uint32_t paths, std::uint64_t seed) const {
   std::vector<Point> points;
-  for (const auto& u : scrambled_sobol(paths, hash({seed, 0}))) {
+  for (const auto& u : scrambled_sobol(paths, hash({seed, stream::path_starts}))) {
     points.push_back(square_to_quad(receiver.corners, u[0], u[1]));
   }
-  const std::vector<std::uint8_t> counts = exposed(scene_.faces(), surfaces_, receiver, points, hash({seed, 1}));
+  const std::vector<std::uint8_t> counts =
+      exposed(scene_.faces(), surfaces_, receiver, points, hash({seed, stream::exposed_points}));
   const Vector& normal = surfaces_.at(receiver.polygon, receiver.side).normal;
   std::vector<Vertex> vertices;
   for (std::uint32_t k = 0; k < paths; ++k) {
@@ -301,13 +287,14 @@ std::vector<Vertex> PathTracer::starts(const PathRegion& region, std::uint32_t p
   double whole = 0;
   for (const PathReceiver& receiver : region.receivers)
     area_up_to.push_back(whole += area_vector(receiver.corners).norm());
-  const Samples samples = scrambled_sobol(paths, hash({seed, 0}));
+  const Samples samples = scrambled_sobol(paths, hash({seed, stream::path_starts}));
   std::vector<Vertex> vertices;
   for (std::uint32_t k = 0; k < paths; ++k) {
     const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, samples[k][2] * whole);
     const PathReceiver& receiver = region.receivers[static_cast<std::size_t>(found - area_up_to.begin())];
     const Point point = square_to_quad(receiver.corners, samples[k][0], samples[k][1]);
-    if (exposed(scene_.faces(), surfaces_, receiver, {&point, 1}, hash({seed, 1, k})).front() == 0) continue;
+    const std::uint32_t seed_here = hash({seed, stream::exposed_points, k});
+    if (exposed(scene_.faces(), surfaces_, receiver, {&point, 1}, seed_here).front() == 0) continue;
     const Vector& normal = surfaces_.at(receiver.polygon, receiver.side).normal;
     vertices.push_back({point, normal, receiver.polygon, receiver.side, k, Spectrum::Ones(bands())});
   }
@@ -375,13 +362,13 @@ Spectrum PathTracer::light_from_sources(const std::vector<Vertex>& vertices, con
 // The first mirror is stratified over the paths: few of many mirrors may light a place.
 Spectrum PathTracer::light_in_mirrors(const Vertex& vertex, const std::array<double, 4>& sample,
                                       const PathStep& step) const {
-  const double jitter = uniform({step.seed, vertex.path, 11});
-  const double first = (shuffled_index(vertex.path, step.paths, hash({step.seed, 12})) + jitter) / step.paths;
+  const double jitter = uniform({step.seed, vertex.path, stream::mirror_jitter});
+  const std::uint32_t place = shuffled_index(vertex.path, step.paths, hash({step.seed, stream::mirror_order}));
   return mirrors_.sample_irradiance({vertex.point, vertex.normal}, vertex.polygon,
-                                    {.first_mirror = first,
-                                     .luminaire = uniform({step.seed, vertex.path, 13}),
+                                    {.first_mirror = (place + jitter) / step.paths,
+                                     .luminaire = uniform({step.seed, vertex.path, stream::mirror_luminaire}),
                                      .on_luminaire = {sample[0], sample[1]},
-                                     .seed = hash({step.seed, vertex.path, 14})});
+                                     .seed = hash({step.seed, vertex.path, stream::mirror_chain})});
 }
 
 // One scattered ray from each vertex, backward along the light's way. A side that is not kept is black.
@@ -417,7 +404,7 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
       if (a > 0) step.irradiance += throughput * there.exitance * (a / (by_area + a));
     }
 
-    // 2. What it scatters
+    // 2. Scattered light
     const std::optional<Vertex> next = next_vertex(hit, throughput, {vertex.path, seed});
     if (next) step.vertices.push_back(*next);
   }
@@ -430,7 +417,8 @@ std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& th
   const Surface& there = surfaces_.at(hit.polygon, hit.side);
   const Spectrum reflected = throughput * reflectance_at(there, hit.point);
   const Spectrum through = throughput * there.scattered_through;
-  const double survival = std::min((reflected + through).maxCoeff(), highest_survival);
+  // Below 1, as a path between surfaces that absorb nothing would not end.
+  const double survival = std::min((reflected + through).maxCoeff(), 0.9999);
   const double drawn = uniform({path.seed, path.path});
   if (drawn >= survival) return std::nullopt;
   const double on_this_side = survival * (reflected.maxCoeff() / (reflected.maxCoeff() + through.maxCoeff()));
@@ -454,7 +442,8 @@ Batch PathTracer::trace(std::vector<Vertex> vertices, std::uint32_t paths, std::
     const std::uint32_t seed_here = hash({seed, length});
     const Samples samples = samples_at(vertices, paths, seed_here);
     batch.irradiance += light_from_lamps(vertices, samples);
-    const double asked = length > many_bounces ? asked_of_many : 1;
+    // Paths between white faces have thousands of vertices: of the later ones one in 16 sends rays to luminaires.
+    const double asked = length > 32 ? 1.0 / 16 : 1;
     batch.irradiance += light_from_sources(vertices, samples, {paths, seed_here, asked});
     batch.rays += rays_of(vertices.size(), asked);
     Step step = scatter(vertices, samples, seed_here);
@@ -464,8 +453,8 @@ Batch PathTracer::trace(std::vector<Vertex> vertices, std::uint32_t paths, std::
   return batch;
 }
 
-// The ratio of what all batches have found to their exposed points, with its standard error from the scatter of
-// batches: those of one receiver are independent of each other. Two rows.
+// The light of all batches over their exposed points, and its standard error from the scatter of the batches, which
+// are independent of each other. Two rows.
 Field mean_and_error(std::span<const Batch> batches) {
   const auto count = static_cast<double>(batches.size());
   Field result = Field::Zero(2, batches.front().irradiance.size());
@@ -492,7 +481,7 @@ PathEstimate trace_all(const PathTracer& tracer, std::size_t receivers, const St
   const std::uint32_t paths = std::bit_ceil((options.paths + path_batches - 1) / path_batches);  // of a batch
   std::vector<Batch> batches(receivers * path_batches);
   parallel_for(batches.size(), Stage::trace_paths, observer, [&](std::size_t k) {
-    const std::uint64_t seed = hash({options.seed, 0x70617468, k});
+    const std::uint64_t seed = hash({options.seed, stream::path_seeds, k});
     batches[k] = tracer.trace(starts(k / path_batches, paths, seed), paths, seed);
   });
 

@@ -16,7 +16,7 @@ namespace patchlight {
 
 /// A flat piece of one side of a polygon, whose mean irradiance is wanted.
 struct PathReceiver {
-  std::array<Point, 4> corners;  ///< convex, metres; a triangle repeats its last
+  std::array<Point, 4> corners;  ///< convex, meters; a triangle repeats its last
   PolygonIndex polygon = 0;
   Side side = Side::front;
 };

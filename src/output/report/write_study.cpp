@@ -2,7 +2,7 @@
 
 #include "output/file/whole_file.h"
 #include "output/plot/write_plot.h"
-#include "study/price.h"
+#include "study/study.h"
 
 #include <algorithm>
 #include <functional>

@@ -7,7 +7,6 @@
 #include "light/pane.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "scene/photometric_web.h"
 #include "support/scenes.h"
 

@@ -1,7 +1,6 @@
 #include "base/sampling.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "support/polygon_shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "solve/solved_bands.h"
+#include "solve/scattering.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "patchlight/simulate.h"
 
 #include "mesh/patch_lookup.h"
-#include "study/reference.h"
+#include "study/study.h"
 #include "support/daylight_office.h"
 
 #include <gtest/gtest.h>

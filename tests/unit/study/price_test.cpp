@@ -1,4 +1,4 @@
-#include "study/price.h"
+#include "study/study.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

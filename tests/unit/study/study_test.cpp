@@ -1,7 +1,5 @@
 #include "study/study.h"
 
-#include "study/price.h"
-#include "study/reference.h"
 #include "support/scenes.h"
 
 #include <cmath>
