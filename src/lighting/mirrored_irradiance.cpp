@@ -4,10 +4,7 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "lighting/receiver.h"
-#include "lighting/receivers.h"
-#include "lighting/shifted_points.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 
 #include <algorithm>
 #include <array>
