@@ -4,7 +4,6 @@
 
 #include "lighting/pane_sides.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <memory>
 #include <optional>

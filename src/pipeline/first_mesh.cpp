@@ -7,7 +7,7 @@
 #include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
-#include "visibility/tracing.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cstdint>
