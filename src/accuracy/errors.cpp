@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "solve/scattering.h"

@@ -3,7 +3,7 @@
 #include "accuracy/errors.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"

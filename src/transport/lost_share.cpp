@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/small_patches.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"

@@ -5,7 +5,6 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "form_factor/pair_samples.h"
-#include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "transport/tiles.h"

@@ -1,7 +1,6 @@
 #include "transport/row_tracer.h"
 
 #include "base/sampling.h"
-#include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
 #include "scene/transmittance.h"
 #include "transport/sights.h"
