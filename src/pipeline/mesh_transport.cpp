@@ -13,7 +13,6 @@
 #include "pipeline/second_mesh.h"
 #include "solve/scattering.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "transport/pair_sampler.h"
 #include "transport/ray_rows.h"
 #include "transport/smoothing.h"
