@@ -214,7 +214,7 @@ constexpr double left_out = 0.3;
 
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem,
                      std::optional<double> largest_row_sum) {
-  // Few directions: by a million patches these are what takes most of the memory.
+  // Few directions: by a million patches these take most of the memory.
   return solve(transport, problem,
                {.solver = usual_solver(transport, problem),
                 .relative_error = bar_tolerance,
@@ -227,7 +227,7 @@ RadiosityProblem in_bands(const RadiosityProblem& problem, const std::vector<Eig
   return {of_bands(problem.scattering, bands), problem.exitance(Eigen::all, bands), problem.area};
 }
 
-// Solutions y in some bands, with F y: what others may be combinations of.
+// Solutions y in some bands, with F y: others may be combinations of these.
 struct KnownBands {
   Field radiosity;
   Field irradiance;

@@ -100,7 +100,7 @@ bool divides(const Scene& scene, const Solid& solid, Dividing by) {
   return opaque && (solid.has_opening || by == Dividing::all);
 }
 
-// A shell, and what is known of the sides of its own polygons.
+// A shell, and the sides of its own polygons.
 struct Shell {
   Solid solid;
   std::vector<std::uint8_t> inner;  // at 2 * polygon + side: 0 not of the shell, 1 faces its inside, 2 its outside

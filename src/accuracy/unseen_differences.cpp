@@ -76,7 +76,7 @@ int count_far(const PatchCorners& from, std::span<const Seen> seen) {
 
 class Gather {
  public:
-  // Lamps that are many patches are left in what rays over the hemisphere find.
+  // Lamps that are many patches are left to the rays over the hemisphere.
   Gather(const SolvedPatches& patches, const RaysOfQuarters& rays)
       : mesh_(patches.mesh),
         occluder_(patches.occluder),
@@ -127,7 +127,7 @@ class Gather {
   bool takes_by_flux_ = false;  // everywhere
   const Eigen::VectorXd& covered_;
   const Field& exitance_;
-  Field sent_;  // what rays over the hemisphere find of the radiosity
+  Field sent_;  // the radiosity that rays over the hemisphere find
   const Field& irradiance_;
   const Field& from_no_patch_;
   RaysOfQuarters rays_;
@@ -193,7 +193,7 @@ bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hi
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
 
-// No ray to a lamp goes over mirrors: what lamps send over these is found with the rest.
+// No ray to a lamp goes over mirrors: light of lamps over these is found with the rest.
 bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.reflections > 0; }
 
 // Shadow rays go to points of lamps with the density q_j / A_j, q_j the probability of lamp j, and rays over the
@@ -286,7 +286,7 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
   }
 }
 
-// The mean is that over what is exposed: of a patch that solids cover in part, rays that meet backs start inside one.
+// The mean is that over the exposed part: of a patch that solids cover in part, rays that meet backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
@@ -361,7 +361,7 @@ struct Differences {
   Field of_irradiance;    // of each quarter from the mean of its patch, W/m^2, as long as it is needed
   Field of_quarters;      // of radiosity, the same
   SeenFromAfar from_afar;
-  Field at_patches;  // what they change of the irradiance of each patch, W/m^2
+  Field at_patches;  // the change of the irradiance of each patch by them, W/m^2
   Field by_points;   // W: the part of these by single points, which quarters do not send; one row
 
   // Calls `visit` with each patch that is met from a quarter, the difference of radiosity there, one row, and whether
@@ -381,7 +381,7 @@ struct Differences {
   }
 };
 
-// H_q - H, where H is the mean over what is exposed of the quarters.
+// H_q - H, where H is the mean over the exposed parts of the quarters.
 Field differences_of_irradiance(const GatheredQuarters& rays, const FieldView& irradiance) {
   Field difference = Field::Zero(irradiance.rows(), irradiance.cols());
   for (Eigen::Index first = 0; first < irradiance.rows(); first += 4) {
@@ -527,7 +527,7 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   unseen.display = root_of_mean(display_of(one, other));
   one.of_irradiance = other.of_irradiance = {};
 
-  // 2. Through all reflections; what is finer than the quarters is extrapolated.
+  // 2. Through all reflections; differences inside the quarters are extrapolated.
   const double scale = 1 / (1 - std::pow(2.0, -mesh_order));
   const auto through_reflections = [&](const Differences& differences, const Differences& of_other) -> Field {
     const Field change = followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));

@@ -209,7 +209,7 @@ PATCHLIGHT_INLINE Heights heights(const PatchCluster& first, int lane, const Flo
 
 enum class Zone : std::uint8_t { none = 0, exact = 1, middle = 2, far = 3 };
 
-// What each pair of the row needs.
+// The zone of each pair of the row.
 PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float3& shift, const PatchCluster& second,
                                 std::array<std::int32_t, Lanes::count>& zone) {
   const Heights h = heights(first, lane, shift, second);

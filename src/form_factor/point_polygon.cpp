@@ -8,7 +8,7 @@
 namespace patchlight {
 
 double point_to_polygon(const Point& point, const Vector& normal, std::span<const Point> polygon) {
-  // Cut away what lies below the horizon; most polygons lie above.
+  // Cut away the part below the horizon; most polygons lie above.
   const auto below = [&](const Point& corner) { return normal.dot(corner - point) < 0; };
   std::vector<Point> clipped;
   if (std::any_of(polygon.begin(), polygon.end(), below)) {

@@ -155,7 +155,7 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& err
   return facts;
 }
 
-// Adds what is known.
+// Adds the known entries.
 Assembly with_known(Assembly assembly, const KnownEntries& known) {
   const Assembly& from = known.assembly;
   parallel_for(known.place.size(), [&](std::size_t row) {
@@ -256,7 +256,7 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
   const std::vector<float> arriving = occluder.transmittance(segments);
   counts.shadow_rays = segments.size();
 
-  // 2. What they add up to.
+  // 2. Their sums.
   std::size_t next = 0;
   for (const Drawn& pair : pairs) {
     SampleMeans sums;

@@ -293,7 +293,7 @@ ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& 
       sums.set(H, G, narrow_toward_zero(sum));
     }
   });
-  // What narrowing took, and what the patches of a parent keep among themselves.
+  // The loss by narrowing, and the exchange of the patches of a parent among themselves.
   const Field rows = summed_by_parent(mesh, (row_sums(S) + closed.remainder).array());
   Eigen::VectorXd remainder = rows.col(0).matrix() - row_sums(sums);
   return {std::move(sums), std::move(remainder), closed.method};

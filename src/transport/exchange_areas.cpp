@@ -76,7 +76,7 @@ constexpr std::size_t simd_width = 8;  // patches side by side: doubles of an AV
 template <std::size_t lanes>
 using Doubles [[gnu::vector_size(sizeof(double) * lanes), gnu::aligned(sizeof(double)), gnu::may_alias]] = double;
 
-// Floats fetched ahead of their use: about what arrives in the time of a memory access.
+// Floats fetched ahead of their use: about as many arrive in the time of a memory access.
 constexpr std::size_t prefetch_distance = 2048;
 
 // Doubles of a register that the whole library is compiled for.
@@ -91,10 +91,10 @@ struct BandRange {
 // Rows at once, so that b_J and out_J are loaded a quarter as often.
 constexpr std::size_t tile_rows = 4;
 
-// Bands for which a row is turned into doubles once: what these take of b_J and out_J stays in the nearest cache.
+// Bands for which a row is turned into doubles once: their part of b_J and out_J stays in the nearest cache.
 constexpr std::size_t most_bands = 18;
 
-// Bands at once whose sums fit into the registers: AVX-512 has 32 of them, what is narrower 16.
+// Bands at once whose sums fit into the registers: AVX-512 has 32 of them, narrower ones 16.
 template <std::size_t lanes>
 constexpr std::size_t bands_at_once = lanes == simd_width ? 3 : 2;
 
@@ -165,7 +165,7 @@ PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t p
     for_block<bands>([&](std::size_t k, std::size_t band) { *place_of_sums(k, band) = sums[k][band]; });
 }
 
-// Four rows with `bands` bands. What is added up is the same for registers of any size.
+// Four rows with `bands` bands. The sums are the same for registers of any size.
 template <std::size_t lanes, std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply_parts(const double* wide, std::size_t r, const BandRange range,
                                       const TileProduct product) {

@@ -195,7 +195,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
     pair.bin = {Pool::bins - 1, Pool::bins - 1};
     return pair;
   }
-  // 1. The usual rays of both halves; more by what the other half has met.
+  // 1. The usual rays of both halves; more where those of the other half disagree.
   std::array<SampleSet, 2> sets;
   std::array<LampRays, 2> rays;
   for (std::uint32_t half = 0; half < 2; ++half) {
@@ -209,7 +209,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
 
   // 2. The form factor without occluders is not worth its time where nothing is seen.
   if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
-  // Clear ones may hold all of what comes at an angle.
+  // Clear ones may hold all light at an angle.
   const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i], mesh.side[i]));
   for (std::size_t half = 0; half < 2; ++half) {
     pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area, most);
@@ -218,7 +218,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   return pair;
 }
 
-// What is known of each patch (row) and piece (column) until the pool is.
+// The values of each patch (row) and piece (column) until the pool is known.
 struct PieceValues {
   template <typename Value>
   using Table = Eigen::Array<Value, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -275,7 +275,7 @@ double PairSampler::exchange_area(const Pair& pair) const {
   const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
   const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
-  // Clear patches may hold all of what comes at an angle.
+  // Clear patches may hold all light at an angle.
   return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / held_by_both);
 }
 
@@ -345,7 +345,7 @@ PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
 }
 
 bool ClusterPairs::is_free(const ClusterHull& a, const ClusterHull& b) const {
-  // What a clear polygon holds back depends on the angle, which no closed form knows.
+  // The share that a clear polygon holds back depends on the angle, which no closed form knows.
   if (a.is_covered || b.is_covered || a.is_clear || b.is_clear) return false;
   return !occluder_.can_occlude() || occluder_.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
 }

@@ -101,7 +101,7 @@ class PairSampler {
   SampleTable table_;
 };
 
-/// What decides on the shafts of a cluster.
+/// The data of a cluster that decide on its shafts.
 struct ClusterHull {
   Slabs slabs;
   std::optional<HalfSpace> behind;     ///< of a planar cluster
@@ -121,7 +121,7 @@ struct ClusterPair {
   std::size_t column = 0;
 };
 
-/// What decides on the exchange areas between two clusters.
+/// How the exchange areas between two clusters are found.
 enum class PairClass {
   averted,  ///< all are 0, as one cluster lies behind the other
   hidden,   ///< all are 0, as one polygon stands between them

@@ -53,7 +53,7 @@ double Drawer::of_unanimous(const SamplingError::Unanimous& unanimous, PatchInde
   return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(area[i], area[j])));
 }
 
-// Adds what the entries of row j and the columns before it contribute.
+// Adds the part of the entries of row j and the columns before it.
 void Drawer::add_row(PatchIndex j, const FieldView& x, Field& sum) const {
   const Eigen::Index columns = x.cols();
   const Eigen::Index draws = sum.cols() / columns;

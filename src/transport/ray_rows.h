@@ -39,11 +39,12 @@ enum class RayStep : std::uint8_t {
 };
 inline constexpr std::uint32_t ray_steps = 6;
 
-/// A stop of a ray that is specular on its way, so that what it tells is another form factor for each colour of the
+/// A stop of a ray that is specular on its way, so that it has another form factor for each color of the
 /// clear polygons and mirrors on it: geometry alone, 16 bytes. The ray is all stops up to one with `kept` or `ends`.
 struct SpecularStop {
   static constexpr PatchIndex in_the_open = no_patch;  ///< a ray has left the scene
-  static constexpr PatchIndex at_back = no_patch - 1;  ///< it meets a side without patches, or what lies on the patch
+  static constexpr PatchIndex at_back =
+      no_patch - 1;  ///< it meets a side without patches, or a face that lies on the patch
 
   PatchIndex patch = in_the_open;     ///< that is met
   float form_factor = 0;              ///< of the ray there, if nothing was lost on its way and all is held
@@ -125,11 +126,11 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 
 /// Rows of form factors for one colour: that of the clear polygons and mirrors of an occluder, which is as that by
-/// which the rows were traced but for the colours. Each row sums up to what its patch sees by light of this colour.
-/// Rows without stops stay as they are. No ray is traced.
+/// which the rows were traced but for the colours. Each row sums up to the share that its patch sees by light of this
+/// color. Rows without stops stay as they are. No ray is traced.
 TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& occluder);
 
-/// Each row as a whole times what makes its sum that of `wanted`.
+/// Multiplies each row by the factor that makes its sum that of `wanted`.
 void scale(RayRows& rows, const Eigen::VectorXd& wanted);
 
 }  // namespace patchlight

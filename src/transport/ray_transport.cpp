@@ -15,7 +15,7 @@
 namespace patchlight {
 namespace {
 
-// `width` columns, row by row without a gap, and where what they irradiate is added.
+// `width` columns, row by row without a gap, and where their irradiance is added.
 struct Columns {
   const double* values;
   double* sums;

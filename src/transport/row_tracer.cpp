@@ -132,7 +132,7 @@ struct SamplePlace {
   float density;
 };
 
-// The place of a patch with these coordinates, and what its samples weigh there.
+// The place of a patch with these coordinates, and the weight of its samples there.
 SamplePlace place_on(const SampledPatch& patch, float u, float v) {
   if (patch.is_triangle) {
     const float root = std::sqrt(u);

@@ -27,7 +27,7 @@ inline constexpr std::uint32_t most_rays = 4096;
 std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean);
 
 /// Patches from which much of the light is expected, towards which rays are sent on purpose: each with a probability in
-/// proportion to its share of their flux. What is expected decides about the error alone, never about the mean.
+/// proportion to its share of their flux. The expected light decides about the error alone, never about the mean.
 class BrightPatches {
  public:
   /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area;

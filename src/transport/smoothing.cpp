@@ -212,7 +212,7 @@ std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const NearPatches& can
   return found;
 }
 
-// What each neighbour's value counts in the regression's value at the centroid; they sum up to 1.
+// The weights of the neighbors' values in the regression's value at the centroid; they sum up to 1.
 std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
   double sum = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
   for (const Neighbour& n : neighbours) {
@@ -244,7 +244,7 @@ struct Smoothing {
 };
 
 // Of neighbours with their coefficients: the means of `width` bands from `place` on in both halves, and as the variance
-// the weighted sum of the squares of what either half is off their mean.
+// the weighted sum of the squares of the distance of either half from their mean.
 template <std::size_t width>
 void sum_up(const Smoothing& fields, Eigen::Index place, Eigen::Index band, const std::vector<Neighbour>& neighbours,
             const std::vector<double>& c) {

@@ -24,8 +24,8 @@ inline constexpr PatchIndex tile_edge = 64;
 /// threads.
 inline constexpr PatchIndex stripes = 8;
 
-/// Adds up what add(row, sum) adds to a copy of `zero` for every row below `rows`. Stripe s takes the rows s, s +
-/// count,
+/// The sum over all rows below `rows` of the values that add(row, sum) adds to a copy of `zero`. Stripe s takes the
+/// rows s, s + count,
 /// ...: long and short rows spread evenly.
 template <typename Sum, typename Add>
 Sum sum_over_stripes(PatchIndex rows, PatchIndex count, const Sum& zero, Add add) {
@@ -38,8 +38,8 @@ Sum sum_over_stripes(PatchIndex rows, PatchIndex count, const Sum& zero, Add add
 }
 
 /// How ExchangeAreas are stored: square tiles of tile_edge x tile_edge entries for block rows I <= J, row by row; a
-/// diagonal tile holds both of its halves, and rows and columns beyond size() are zero. For what multiplies with tiles;
-/// everything else goes through entry_parts(), for_entries() and changed().
+/// diagonal tile holds both of its halves, and rows and columns beyond size() are zero. For products with tiles;
+/// all other code goes through entry_parts(), for_entries() and changed().
 struct Tiles {
   /// Number of block rows.
   static PatchIndex blocks(const ExchangeAreas& S);
