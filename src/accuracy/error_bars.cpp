@@ -18,7 +18,7 @@ double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const
   const Eigen::VectorXd area = problem.area.cwiseProduct(weight);
   const Eigen::ArrayXd error = area_norm(problem.scattering.reflect(bar), area);
   const Eigen::ArrayXd reflected = area_norm(solution.radiosity - problem.exitance, area);
-  // Of what reflects nothing every error is infinitely large.
+  // Without reflected light every error is infinitely large.
   const Eigen::ArrayXd relative = (error == 0).select(0.0, error / reflected);
   return relative.isNaN().any() ? std::numeric_limits<double>::infinity() : largest(relative);
 }

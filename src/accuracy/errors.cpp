@@ -6,8 +6,10 @@
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
+#include "base/tolerances.h"
 #include "base/vectors.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
@@ -40,7 +42,7 @@ Eigen::MatrixXd cosines_between(const FieldView& field, const Eigen::VectorXd& a
 
 // Pivoted Cholesky decomposition: picks the band with the largest residual until every residual is below `tolerance`.
 std::vector<Eigen::Index> pivots(const Eigen::MatrixXd& G, double tolerance) {
-  Eigen::VectorXd left = G.diagonal();  // squares of what the chosen ones do not tell
+  Eigen::VectorXd left = G.diagonal();  // squares of the residuals
   Eigen::MatrixXd L(G.rows(), 0);
   std::vector<Eigen::Index> chosen;
   Eigen::Index next = 0;
@@ -64,11 +66,7 @@ SpanningBands each_its_own(Eigen::Index bands) {
 
 }  // namespace
 
-Field SpanningBands::of(const FieldView& field) const {
-  Field columns(field.rows(), static_cast<Eigen::Index>(bands.size()));
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = field.col(bands[static_cast<std::size_t>(k)]);
-  return columns;
-}
+Field SpanningBands::of(const FieldView& field) const { return field(Eigen::all, bands); }
 
 Field SpanningBands::all_bands(const FieldView& in_bands) const {
   assert(in_bands.cols() == weights.rows());
@@ -76,23 +74,20 @@ Field SpanningBands::all_bands(const FieldView& in_bands) const {
 }
 
 SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area, double tolerance) {
-  SpanningBands spanning;
   if (field.cols() <= few_bands) return each_its_own(field.cols());
   // 1. Which.
+  SpanningBands spanning;
   Eigen::VectorXd norm;
   const Eigen::MatrixXd G = cosines_between(field, area, norm);
   spanning.bands = pivots(G, tolerance);
-
   if (spanning.bands.size() == static_cast<std::size_t>(field.cols())) return each_its_own(field.cols());
 
   // 2. The combinations nearest to the others, by their normal equations.
-  const auto count = static_cast<Eigen::Index>(spanning.bands.size());
-  Eigen::MatrixXd of_chosen(count, count);
-  Eigen::MatrixXd with_all(count, field.cols());
-  for (Eigen::Index k = 0; k < count; ++k) with_all.row(k) = G.row(spanning.bands[static_cast<std::size_t>(k)]);
-  for (Eigen::Index k = 0; k < count; ++k) of_chosen.col(k) = with_all.col(spanning.bands[static_cast<std::size_t>(k)]);
+  const Eigen::MatrixXd with_all = G(spanning.bands, Eigen::all);
+  const Eigen::MatrixXd of_chosen = with_all(Eigen::all, spanning.bands);
   spanning.weights = of_chosen.llt().solve(with_all) * norm.asDiagonal();
-  for (Eigen::Index k = 0; k < count; ++k) spanning.weights.row(k) /= norm[spanning.bands[static_cast<std::size_t>(k)]];
+  for (Eigen::Index k = 0; k < spanning.weights.rows(); ++k)
+    spanning.weights.row(k) /= norm[spanning.bands[static_cast<std::size_t>(k)]];
   return spanning;
 }
 
@@ -131,15 +126,9 @@ namespace {
 constexpr double near = 0.6;
 constexpr double allowed = 0.35;
 
-// The measured error in the gaps of ten rooms, relative to the irradiance at risk.
-constexpr double gap_scale = 0.5;
-
-// Normals of faces that look back at each other have a product below this one.
-constexpr double opposed = -0.5;
-
 // True when patch j is nearer to patch i than this share of its edge and looks back at it.
 bool is_near(const PatchMesh& mesh, PatchIndex i, PatchIndex j, double within) {
-  if (mesh.normal[i].dot(mesh.normal[j]) > opposed) return false;
+  if (mesh.normal[i].dot(mesh.normal[j]) > -0.5) return false;
   const double distance = (mesh.centroid[i] - mesh.centroid[j]).dot(mesh.normal[j]);
   return distance >= 0 && distance < within * std::sqrt(mesh.area[i]);
 }
@@ -161,14 +150,11 @@ class SeenSources {
     least_ = least_.min(radiosity_.row(j));
     largest_ = largest_.max(radiosity_.row(j));
   }
-  // The rest of the hemisphere is dark.
-  Spectrum range() const { return sum_ < complete ? largest_ : Spectrum(largest_ - least_); }
+  // The rest of the hemisphere is dark. Row sums are 1 in closed rooms, except for single-precision rounding and leaks.
+  Spectrum range() const { return sum_ < 1 - 1e-3 ? largest_ : Spectrum(largest_ - least_); }
   double near_share() const { return near_; }
 
  private:
-  // Row sums are 1 in closed rooms, except for single-precision rounding and leaks.
-  static constexpr double complete = 1 - 1e-3;
-
   const PatchMesh& mesh_;
   const Field& radiosity_;
   double within_;
@@ -179,12 +165,13 @@ class SeenSources {
 void add_row(SeenSources& seen, const RayRows& rows, PatchIndex i, double weight) {
   for (std::uint64_t k = rows.first_hit[i]; k < rows.first_hit[i + 1]; ++k)
     seen.add(i, rows.hits[k], weight * rows.hit_weight[i]);
-  for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-    seen.add(i, rows.entries[k].patch, weight * static_cast<double>(rows.entries[k].form_factor));
+  for (const RayEntry& entry : rows.entries_of(i))
+    seen.add(i, entry.patch, weight * static_cast<double>(entry.form_factor));
 }
 
-// Half of the light that a patch in a gap would get wrong, times the share of near faces beyond that of one. Light from
-// sources of one radiosity is right wherever it comes from, so no more is wrong than their range and the direct light.
+// Half of the light that a patch in a gap would get wrong, as measured in ten rooms, times the share of near faces
+// beyond that of one. Light from sources of one radiosity is right wherever it comes from, so no more is wrong than
+// their range and the direct light.
 template <typename AddSources>
 Field errors_in_gaps(const PatchMesh& mesh, const SolvedProblem& solved, double within, const AddSources& add_sources) {
   const Field& H = solved.solution.irradiance;
@@ -197,7 +184,7 @@ Field errors_in_gaps(const PatchMesh& mesh, const SolvedProblem& solved, double 
     const double share = std::clamp((seen.near_share() - allowed) / (1 - allowed), 0.0, 1.0);
     Spectrum uneven = seen.range();
     if (direct.size() > 0) uneven += direct.row(i);
-    errors.row(i) = gap_scale * share * uneven.min(H.row(i));
+    errors.row(i) = 0.5 * share * uneven.min(H.row(i));
   });
   return errors;
 }
@@ -222,12 +209,12 @@ namespace {
 // The largest error of a propagated error, as a share of its reflected part.
 constexpr double bar_tolerance = 0.05;
 
-// What bands that are solved leave out of those that they span: the others are combined, and checked.
-constexpr double told = 0.3;
+// The share that solved bands leave out of those that they span: the others are combined, and checked.
+constexpr double left_out = 0.3;
 
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem,
                      std::optional<double> largest_row_sum) {
-  // Few directions: by a million patches these are what takes most of the memory.
+  // Few directions: by a million patches these take most of the memory.
   return solve(transport, problem,
                {.solver = usual_solver(transport, problem),
                 .relative_error = bar_tolerance,
@@ -237,13 +224,10 @@ Solution solution_of(const TransportOperator& transport, const RadiosityProblem&
 }
 
 RadiosityProblem in_bands(const RadiosityProblem& problem, const std::vector<Eigen::Index>& bands) {
-  Field exitance(problem.exitance.rows(), static_cast<Eigen::Index>(bands.size()));
-  for (Eigen::Index k = 0; k < exitance.cols(); ++k)
-    exitance.col(k) = problem.exitance.col(bands[static_cast<std::size_t>(k)]);
-  return {of_bands(problem.scattering, bands), exitance, problem.area};
+  return {of_bands(problem.scattering, bands), problem.exitance(Eigen::all, bands), problem.area};
 }
 
-// Solutions y in some bands, with F y: what others may be combinations of.
+// Solutions y in some bands, with F y: others may be combinations of these.
 struct KnownBands {
   Field radiosity;
   Field irradiance;
@@ -259,7 +243,7 @@ Field side_by_side(const Field& one, const Field& other) {
 struct Combination {
   Eigen::ArrayXd irradiance;  // F y
   Eigen::ArrayXd residual;    // r = E + R F y - y
-  bool is_good;               // ||r||_A / (1 - kappa) says that it is not too far off
+  bool is_good;               // by the bound ||r||_A / (1 - kappa)
 };
 
 Combination combined(const KnownBands& known, const RadiosityProblem& of_band, double kappa) {
@@ -292,7 +276,7 @@ class InBands {
   Field irradiance();
 
  private:
-  void solve_bands(const std::vector<Eigen::Index>& bands);
+  void solve_bands(std::vector<Eigen::Index> bands);
   Field combine_others();
 
   const TransportOperator& transport_;
@@ -304,7 +288,7 @@ class InBands {
   std::vector<Eigen::Index> rest_;  // bands that are not found yet
 };
 
-void InBands::solve_bands(const std::vector<Eigen::Index>& bands) {
+void InBands::solve_bands(std::vector<Eigen::Index> bands) {
   const Field radiosity = solution_of(transport_, in_bands(problem_, bands), row_sum_).radiosity;
   const Field irradiance = transport_.apply(radiosity);
   for (std::size_t k = 0; k < bands.size(); ++k) {
@@ -339,15 +323,12 @@ Field InBands::combine_others() {
 Field InBands::irradiance() {
   Field missing = problem_.exitance;
   while (!rest_.empty()) {
-    std::vector<Eigen::Index> next = rest_;
-    const SpanningBands spanning = spanning_bands(missing, problem_.area, told);
+    std::vector<Eigen::Index> next;
+    const SpanningBands spanning = spanning_bands(missing, problem_.area, left_out);
     // When half of the bands are solved so may be the rest.
-    if (2 * (known_.radiosity.cols() + spanning.weights.rows()) <= irradiance_.cols()) {
-      next.clear();
+    if (2 * (known_.radiosity.cols() + spanning.weights.rows()) <= irradiance_.cols())
       for (const Eigen::Index k : spanning.bands) next.push_back(rest_[static_cast<std::size_t>(k)]);
-    }
-    if (next.empty()) next = rest_;
-    solve_bands(next);
+    solve_bands(next.empty() ? rest_ : next);
     missing = combine_others();
   }
   return std::move(irradiance_);
@@ -360,10 +341,9 @@ Field followed(const TransportOperator& transport, const RadiosityProblem& probl
   const auto directly = [&]() -> Field {
     return irradiance + solution_of(transport, of_irradiance, std::nullopt).irradiance;
   };
-  constexpr Eigen::Index few_bands = 3;
   if (irradiance.cols() <= few_bands || !transport.is_reciprocal()) return directly();
   // Independent draws are no combinations of each other.
-  const Eigen::Index spanning = spanning_bands(of_irradiance.exitance, problem.area, told).weights.rows();
+  const Eigen::Index spanning = spanning_bands(of_irradiance.exitance, problem.area, left_out).weights.rows();
   if (2 * spanning > irradiance.cols()) return directly();
   const double row_sum = highest(transport.apply(Field::Ones(irradiance.rows(), 1)))[0];
   if (!(problem.scattering.norm_bound().maxCoeff() * row_sum < 1)) return directly();
@@ -377,21 +357,19 @@ constexpr int draws = 8;
 constexpr std::uint64_t seed = 1;
 
 // A closed matrix has had its rows corrected by S_ij (lambda_i + lambda_j): the same for the draws. Solves
-// (S + diag(S 1) (1 + damping)) lambda = -D 1 for every draw, by conjugate gradients with the diagonal as
-// preconditioner. Damped, as the matrix is nearly singular where patches fall into two kinds that only see each other.
+// (S + 1.02 diag(S 1)) lambda = -D 1 for every draw, by conjugate gradients with the diagonal as preconditioner. Damped
+// by 2 %, as the matrix is nearly singular where patches fall into two kinds that only see each other.
 Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area, const Field& row_errors) {
   constexpr double tolerance = 1e-2;
-  constexpr int most_iterations = 50;
-  constexpr double damping = 0.02;
   const Eigen::ArrayXd A = area.array();
   const Field row_sum = transport.apply(Field::Ones(area.size(), 1)).colwise() * A;
-  const Eigen::ArrayXd diagonal = row_sum.col(0).max(1e-12 * A);
-  const Eigen::ArrayXd damped = (1 + damping) * diagonal;
+  const Eigen::ArrayXd diagonal = row_sum.col(0).max(tolerance_of_arithmetic * A);
+  const Eigen::ArrayXd damped = (1 + 0.02) * diagonal;
 
   Field lambda = Field::Zero(row_errors.rows(), row_errors.cols());
   ConjugateDirections<Field> method(-row_errors, [&](const Field& r) -> Field { return r.colwise() / diagonal; });
   const Eigen::ArrayXd first = method.square();
-  for (int k = 0; k < most_iterations && (method.square() > tolerance * tolerance * first).any(); ++k) {
+  for (int k = 0; k < 50 && (method.square() > tolerance * tolerance * first).any(); ++k) {
     const Field& p = method.direction();
     const Field q = (transport.apply(p).colwise() * A) + (p.colwise() * damped);
     const Eigen::ArrayXd step = method.length(q);
@@ -403,14 +381,10 @@ Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area
 
 // One column of `field` per draw, `column` of each.
 Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index column) {
-  Field column_of_each(field.rows(), field.cols() / columns);
-  for (Eigen::Index draw = 0; draw < column_of_each.cols(); ++draw) {
-    column_of_each.col(draw) = field.col(draw * columns + column);
-  }
-  return column_of_each;
+  return field(Eigen::all, Eigen::seqN(column, field.cols() / columns, columns));
 }
 
-// What draws of the errors change of the light, (D + S (lambda_i + lambda_j)) B = D B + lambda o (S B) + S (lambda o
+// The changes of the light by draws of the errors, (D + S (lambda_i + lambda_j)) B = D B + lambda o (S B) + S (lambda o
 // B), as irradiance.
 struct Draws {
   const RowTransport& transport;
@@ -469,9 +443,9 @@ Field mean_square(std::span<const Field> draws) {
 
 std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
                                            const SolvedProblem& solved, const FieldView& B) {
-  constexpr double told = 1e-3;  // of the light, by few bands: less than draws are sure of by far
   const RadiosityProblem& problem = solved.problem;
-  const SpanningBands spanning = spanning_bands(B, problem.area, told);
+  // Few bands leave out far less of the light than draws are sure of.
+  const SpanningBands spanning = spanning_bands(B, problem.area, 1e-3);
   // 1. D B and D 1.
   const Field light = spanning.of(B);
   Field x(light.rows(), light.cols() + 1);
@@ -504,7 +478,7 @@ std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTranspo
   for (std::uint64_t draw = 0; draw < draws; ++draw) {
     Field error = standard_error;
     for (PatchIndex i = 0; i < mesh.size(); ++i)
-      if ((hash({seed, keys[i], draw, 2}) & 1) != 0) error.row(i) *= -1;
+      if ((hash({seed, keys[i], draw, stream::signs_of_mesh}) & 1) != 0) error.row(i) *= -1;
     followed_draws.push_back(followed(transport, problem, error));
   }
   return followed_draws;
@@ -517,7 +491,7 @@ Field means_over_parents(const NestedMesh& mesh, const FieldView& x, const Eigen
   return of_parents(mesh, means_by_parent(mesh, x, area));
 }
 
-// H = P F B: light between patches twice as large, which know of what arrives nothing but its mean.
+// H = P F B: light between patches twice as large, which know only the mean of the arriving light.
 class ParentTransport : public TransportOperator {
  public:
   ParentTransport(const NestedMesh& mesh, const TransportOperator& of_patches, const Eigen::VectorXd& area)

@@ -28,7 +28,7 @@ struct SpanningBands {
   bool spans_all() const { return weights.rows() == weights.cols(); }
   /// The columns of `bands`.
   Field of(const FieldView& field) const;
-  /// All bands of what depends linearly on the field, from its values in `bands`.
+  /// All bands of a quantity that depends linearly on the field, from its values in `bands`.
   Field all_bands(const FieldView& in_bands) const;
 };
 
@@ -41,7 +41,7 @@ SpanningBands spanning_bands(const FieldView& field, const Eigen::VectorXd& area
 double relative_bar(const FieldView& bar, const RadiosityProblem& problem, const Solution& solution,
                     const Eigen::VectorXd& weight);
 
-/// A problem and what solves it.
+/// A problem and its solution.
 struct SolvedProblem {
   const RadiosityProblem& problem;
   const Solution& solution;
@@ -60,8 +60,8 @@ struct InNeededBands {
 
 InNeededBands in_needed_bands(const SolvedProblem& solved);
 
-/// What an error of the irradiance, W/m^2, comes to through all reflections: e = irradiance + F R e, to 5 % of what
-/// these add in each band. Of many bands some are solved, and others are combinations of them where these are as good.
+/// An error of the irradiance, W/m^2, followed through all reflections: e = irradiance + F R e, to 5 % of the reflected
+/// part in each band. Of many bands some are solved, and others are combinations of them where these are as good.
 Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance);
 
 /// The mean over draws of their squares, per patch and band.
@@ -85,12 +85,12 @@ Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, 
 std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTransport& transport,
                                          const RadiosityProblem& problem, const Field& standard_error);
 
-/// What the share of a patch that is exposed, when it is not all of it, may be off, as a share of it; stratified points
+/// The error of the exposed share of a patch, when it is not all of it, as a share of it; stratified points
 /// find a straight edge with a variance of their number to the power of -3/2 times the length of the edge, which grows
 /// as the root of covered (1 - covered).
 Eigen::ArrayXd exposure_errors(const LostShare& lost);
 
-/// What the size of the patches does to their mean irradiance, by Richardson's extrapolation from sources twice as
+/// The error of the mean irradiance by the size of the patches, by Richardson's extrapolation from sources twice as
 /// large: |F (B_h - B_2h)| / (2^order - 1), where B_2h is the solution on the parents, with the same exchange areas
 /// summed up. Of that and its root mean square over the patches around, the larger: where the difference changes sign,
 /// it is not the error that is 0.
@@ -102,8 +102,8 @@ Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const S
 /// they should.
 inline constexpr double mesh_order = 1.2;
 
-/// What the errors of light straight from the lamps, known from a single difference, are multiplied with, so that bars
-/// cover what they should.
+/// The factor of the errors of light straight from the lamps, known from a single difference, so that bars cover
+/// enough.
 inline constexpr double form_factor_scale = 1.5;
 
 /// Lamps that are a larger share of the patches are not told apart from other light when errors are looked for: rays

@@ -16,9 +16,6 @@
 namespace patchlight {
 namespace {
 
-// Where one cut of everything does not do, those with this share of the effect are cut.
-constexpr double bulk = 0.9;
-
 // rho_i^2 / ||B - E||_A^2
 Field squared_reflectance(const SolvedProblem& solved) {
   const RadiosityProblem& problem = solved.problem;
@@ -46,10 +43,9 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
 
 Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
                                  const Eigen::VectorXd& weight) {
-  constexpr double told = 1e-3;  // of the weights, by few bands
   const Field B = solved.solution.radiosity;
   const Field weights = weight_of_squares(solved, weight);
-  const SpanningBands spanning = spanning_bands(weights, solved.problem.area, told);
+  const SpanningBands spanning = spanning_bands(weights, solved.problem.area, 1e-3);
   const Field noise = B.square() * spanning.all_bands(by_variances(errors, spanning.of(weights)));
   return summed_by_parent(mesh, noise.rowwise().sum()).col(0).matrix();
 }
@@ -71,7 +67,8 @@ std::vector<std::uint8_t> parents_to_cut(const Eigen::VectorXd& effects, const C
     return effects[static_cast<Eigen::Index>(a)] > effects[static_cast<Eigen::Index>(b)];
   });
   const double all = total(effects);
-  const double wanted = std::max(all / (goal.factor * goal.factor), all * (1 - bulk * (1 - goal.left)));
+  // Where one cut of everything would not suffice, those with nine tenths of the effect are cut.
+  const double wanted = std::max(all / (goal.factor * goal.factor), all * (1 - 0.9 * (1 - goal.left)));
   std::vector<std::uint8_t> marks(order.size(), 0);
   if (goal.factor <= 1) return marks;
   double left = all;

@@ -17,7 +17,7 @@
 
 namespace patchlight {
 
-/// What is to be told apart.
+/// Differences whose effects are compared.
 struct EffectsOf {
   Field difference;        ///< of radiosity, W/m^2
   Eigen::VectorXd weight;  ///< of each patch in the error
@@ -26,12 +26,12 @@ struct EffectsOf {
 /// How far each patch is from the mean of its parent, radiosity in W/m^2.
 Field differences_from_parents(const NestedMesh& mesh, const SolvedProblem& solved);
 
-/// w_i^2 rho_i^2 / (A_i ||B - E||_A^2): what the square of a change of A_i H_i weighs in the error.
+/// w_i^2 rho_i^2 / (A_i ||B - E||_A^2): the weight of the square of a change of A_i H_i in the error.
 Field weight_of_squares(const SolvedProblem& solved, const Eigen::VectorXd& weight);
 
 /// How much the light elsewhere changes by differences of radiosity: per parent the sum over all patches of
-/// A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. What it takes to tell where finer patches pay. After
-/// one reflection. `weight` is that of each patch in the error.
+/// A_i w_i^2 (rho_i dH_i)^2, relative to ||B - E||_A^2, all bands. It shows where finer patches pay. After one
+/// reflection. `weight` is that of each patch in the error.
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
                                    const EffectsOf& of);
 
@@ -48,13 +48,13 @@ Eigen::VectorXd squares_of_patches(const SolvedProblem& solved, const FieldView&
 Eigen::VectorXd squares_of_parents(const NestedMesh& mesh, const SolvedProblem& solved, const FieldView& bar,
                                    const Eigen::VectorXd& weight);
 
-/// What is left of the squared mesh error of a parent that is cut: halving the patches' size gains 2^mesh_order.
+/// The share left of the squared mesh error of a parent that is cut: halving the patches' size gains 2^mesh_order.
 inline const double mesh_error_left = std::pow(2.0, -2 * mesh_order);
 
-/// What is left of a squared sampling error with four times the samples.
+/// The share left of a squared sampling error with four times the samples.
 inline constexpr double noise_left = 0.25;
 
-/// What cutting parents is to achieve.
+/// The aim of cutting parents.
 struct CutGoal {
   double factor = 1;              ///< by which the error has to fall
   double left = mesh_error_left;  ///< of the squared effect of a parent that is cut

@@ -5,6 +5,8 @@
 #include "base/near_match.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
+#include "base/tolerances.h"
 #include "base/vectors.h"
 #include "scene/room_body.h"
 #include "scene/shells.h"
@@ -22,14 +24,8 @@
 namespace patchlight {
 namespace {
 
-constexpr std::uint32_t reflections = 4;
-
-// Walks from each patch. Fewer where there are very many patches: only those at a space's border are then less sure.
+// Walks from each place.
 constexpr std::uint32_t usual_walks = 16;
-constexpr std::uint32_t few_walks = 4;
-constexpr PatchIndex many_patches = 50000;
-
-constexpr std::uint32_t enclosure_stream = 0x656e636c;
 
 std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t walks, std::uint32_t key) {
   const auto samples = scrambled_sobol(walks, key);
@@ -42,23 +38,21 @@ std::vector<Ray> onward(const std::vector<FacingPlace>& places, std::uint32_t wa
 }
 
 // A space that is much lower than its faces are wide is a gap, not a room, e.g. below a building that does not touch
-// the ground: most rays end nearer than this share of the size of the face.
-constexpr double least_height = 0.01;
-
+// the ground: most rays end nearer than a hundredth of the size of the face.
 bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
-  const double limit = least_height * std::sqrt(face_area);
+  const double limit = 0.01 * std::sqrt(face_area);
   const auto count = std::count_if(hits.begin(), hits.end(),
                                    [&](const std::optional<Hit>& hit) { return hit && hit->distance < limit; });
   return 2 * static_cast<std::size_t>(count) > hits.size();
 }
 
-// True when fewer than half of the walks from the place with this key leave the scene, and the space before it is no
-// gap before a face of this area, m^2.
+// True when fewer than half of the walks from the place with this key leave the scene in four reflections, and the
+// space before it is no gap before a face of this area, m^2.
 bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& from, std::size_t key, double face_area,
                  std::uint32_t walks) {
   std::vector<FacingPlace> places(walks, from);
-  for (std::uint32_t k = 0; k < reflections; ++k) {
-    const auto hits = faces.first_hits(onward(places, walks, hash({enclosure_stream, key, k})));
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    const auto hits = faces.first_hits(onward(places, walks, hash({stream::enclosure, key, k})));
     if (k == 0 && is_gap(hits, face_area)) return false;
     std::vector<FacingPlace> next;
     for (const std::optional<Hit>& hit : hits) {
@@ -75,7 +69,8 @@ bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& f
 }  // namespace
 
 Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
-  const std::uint32_t walks = mesh.size() > many_patches ? few_walks : usual_walks;
+  // Of very many patches only those at a space's border are less sure with fewer walks.
+  const std::uint32_t walks = mesh.size() > 50000 ? 4 : usual_walks;
   std::vector<double> face_area;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     face_area.push_back(area_vector(corner_points(scene, p)).norm());
@@ -99,16 +94,13 @@ std::vector<std::uint8_t> enclosed_places(const Scene& scene, const Occluder& fa
 
 namespace {
 
-// How far before a patch its space is looked at, as a share of the shell's extent.
-constexpr double step_off = 1e-6;
-
 bool divides(const Scene& scene, const Solid& solid, Dividing by) {
   const bool opaque =
       std::any_of(solid.polygons.begin(), solid.polygons.end(), [&](PolygonIndex p) { return !is_opening(scene, p); });
   return opaque && (solid.has_opening || by == Dividing::all);
 }
 
-// A shell, and what is known of the sides of its own polygons.
+// A shell, and the sides of its own polygons.
 struct Shell {
   Solid solid;
   std::vector<std::uint8_t> inner;  // at 2 * polygon + side: 0 not of the shell, 1 faces its inside, 2 its outside
@@ -129,7 +121,7 @@ Shell shell_of(const Scene& scene, const Shells& shells, Solid solid) {
 bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
   const std::uint8_t own = inner[2 * std::size_t{mesh.polygon[i]} + static_cast<std::size_t>(mesh.side[i])];
   if (own != 0) return own == 1;
-  return holds(solid, mesh.centroid[i] + step_off * solid.box.diagonal().norm() * mesh.normal[i]);
+  return holds(solid, mesh.centroid[i] + tolerance_of_coordinates * solid.box.diagonal().norm() * mesh.normal[i]);
 }
 
 }  // namespace
@@ -181,20 +173,13 @@ struct Interest {
   std::optional<bool> is_inside = {};  // nothing: both sides
 };
 
-// What is called "room.inside" itself is meant before the inside of "room".
+// A part called "room.inside" itself comes before the inside of "room".
 Interest interest_named(const std::string& name, const std::set<std::string>& known) {
   if (known.contains(name)) return {name};
   for (const std::string side : {inside, outside}) {
     if (name.ends_with(side)) return {name.substr(0, name.size() - side.size()), side == inside};
   }
   return {name};
-}
-
-std::vector<Interest> interests_named(const Scene& scene, const std::vector<std::string>& names) {
-  const std::set<std::string> known = names_in(scene);
-  std::vector<Interest> interests;
-  for (const std::string& name : names) interests.push_back(interest_named(name, known));
-  return interests;
 }
 
 // Of the rooms of this name, per patch whether it faces into one.
@@ -237,7 +222,9 @@ Eigen::VectorXd interest_by_default(const Scene& scene, const PatchMesh& mesh, c
 Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names,
                             const Eigen::VectorXd& enclosed) {
   if (names.empty()) return interest_by_default(scene, mesh, enclosed);
-  const std::vector<Interest> interests = interests_named(scene, names);
+  const std::set<std::string> known = names_in(scene);
+  std::vector<Interest> interests;
+  for (const std::string& name : names) interests.push_back(interest_named(name, known));
   const bool sides =
       std::any_of(interests.begin(), interests.end(), [](const Interest& i) { return i.is_inside.has_value(); });
   const Eigen::VectorXd within = sides ? inside_shells(scene, mesh, Dividing::all) : Eigen::VectorXd();

@@ -3,8 +3,9 @@
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "form_factor/pair_samples.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
@@ -61,25 +62,21 @@ ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex
 
 namespace {
 
-// More evaluations of lamps at patches than this are not worth their time: lamps are chosen by their flux then.
-constexpr double most_evaluations = 2e7;
-
 // From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
 bool is_far_from(const PatchCorners& corners, double distance) {
-  constexpr double edges = 8;
-  return distance * distance > edges * edges * longest_edge_squared(corners);
+  return distance * distance > 8 * 8 * longest_edge_squared(corners);
 }
 
 // How many rays have met a patch that is far from where they start.
 int count_far(const PatchCorners& from, std::span<const Seen> seen) {
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const Seen& one) {
-    return one.sight == Sight::patch && is_far_from(from, one.hit->distance);
+    return one.sight == Sight::patch && is_far_from(from, one.met->distance);
   }));
 }
 
 class Gather {
  public:
-  // Lamps that are many patches are left in what rays over the hemisphere find.
+  // Lamps that are many patches are left to the rays over the hemisphere.
   Gather(const SolvedPatches& patches, const RaysOfQuarters& rays)
       : mesh_(patches.mesh),
         occluder_(patches.occluder),
@@ -97,16 +94,16 @@ class Gather {
     const auto lamps = static_cast<double>(lamps_.size());
     if (lamps > most_lamps * mesh_.size()) lamps_.clear();
     if (!lamps_.empty()) sent_ -= exitance_;
-    takes_by_flux_ = lamps * mesh_.size() > most_evaluations;
+    // More evaluations of lamps at patches are not worth their time.
+    takes_by_flux_ = lamps * mesh_.size() > 2e7;
     by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
 
  private:
-  enum class Purpose : std::uint64_t { hemisphere, lamps, clear, at_points };
-  std::uint32_t seed_of(PatchIndex patch, Purpose purpose) const {
-    return hash({rays_.seed, keys_[patch], static_cast<std::uint64_t>(purpose)});
+  std::uint32_t seed_of(PatchIndex patch, stream::Stream purpose) const {
+    return hash({rays_.seed, keys_[patch], purpose});
   }
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   std::vector<Seen> seen_along(PatchIndex patch, const std::vector<Ray>& rays) const;
@@ -130,7 +127,7 @@ class Gather {
   bool takes_by_flux_ = false;  // everywhere
   const Eigen::VectorXd& covered_;
   const Field& exitance_;
-  Field sent_;  // what rays over the hemisphere find of the radiosity
+  Field sent_;  // the radiosity that rays over the hemisphere find
   const Field& irradiance_;
   const Field& from_no_patch_;
   RaysOfQuarters rays_;
@@ -140,7 +137,7 @@ class Gather {
 std::vector<Ray> Gather::hemisphere_rays(PatchIndex patch) const {
   const PatchCorners corners = mesh_.corner_points(patch);
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
-  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::hemisphere));
+  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, stream::hemisphere));
   std::vector<Ray> rays;
   rays.reserve(4 * samples.size());
   for (std::size_t q = 0; q < 4; ++q) {
@@ -155,7 +152,7 @@ std::vector<Ray> Gather::hemisphere_rays(PatchIndex patch) const {
 
 // Clear polygons let the same rays of all quarters through.
 std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& rays) const {
-  const std::uint32_t of_patch = seed_of(patch, Purpose::clear);
+  const std::uint32_t of_patch = seed_of(patch, stream::clear_at_quarters);
   if (occluder_.specular_faces().empty()) return sights_.of_rays(patch, rays, of_patch);
   std::vector<Seen> seen;
   for (auto first = rays.begin(); first != rays.end(); first += rays_.rays) {
@@ -172,7 +169,8 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
   if (lamps_.empty()) return irradiance;
   const ChoiceOfLamps for_patch = takes_by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
   const ChoiceOfLamps& choice = takes_by_flux_ ? by_flux_ : for_patch;
-  const auto samples = scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, Purpose::lamps));
+  const auto samples =
+      scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, stream::lamps_at_quarters));
   std::vector<Segment> segments;
   segments.reserve(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -191,12 +189,11 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
 
 // Does a dark patch meet a bright one close by?
 bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const {
-  constexpr double brighter = 2;
-  return hit.reflections == 0 && brighter * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
+  return hit.reflections == 0 && 2 * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
 
-// No ray to a lamp goes over mirrors: what lamps send over these is found with the rest.
+// No ray to a lamp goes over mirrors: light of lamps over these is found with the rest.
 bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.reflections > 0; }
 
 // Shadow rays go to points of lamps with the density q_j / A_j, q_j the probability of lamp j, and rays over the
@@ -220,18 +217,18 @@ double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const 
          static_cast<double>(occluder_.transmittance({&segment, 1}).front());
 }
 
-// What a ray over the hemisphere brings to a point of a patch, summed over the bands.
+// The light of a ray over the hemisphere at a point of a patch, summed over the bands.
 double Gather::from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
                                const Seen& seen) const {
   if (seen.sight != Sight::patch) return 0;
-  const SidePoint at{seen.hit->polygon, seen.hit->side, seen.hit->point};
+  const SidePoint at{seen.met->polygon, seen.met->side, seen.met->point};
   const PatchIndex sender = lookup_.patches_at({&at, 1}).front();
   if (sender == no_patch) return 0;
   const double sent = sent_.row(sender).sum();
   const double emitted = lamps_.empty() ? 0 : exitance_.row(sender).sum();
   if (!(emitted > 0)) return sent;
   // No shadow ray goes over mirrors.
-  if (seen.hit->reflections > 0) return sent + emitted;
+  if (seen.met->reflections > 0) return sent + emitted;
   const double geometry = geometry_term(point, mesh_.normal[patch], at.point, mesh_.normal[sender]);
   return sent + emitted * (1 - part_by_shadow_rays(choice, sender, geometry));
 }
@@ -240,9 +237,9 @@ double Gather::from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, co
 // even.
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
-  constexpr std::size_t few_lamps = 16;  // of which each is told apart for each point
   const double whole = irradiance_.row(patch).sum();
-  const bool takes_by_flux = lamps_.empty() || lamps_.size() > few_lamps;
+  // Of few lamps each is weighed for each point.
+  const bool takes_by_flux = lamps_.empty() || lamps_.size() > 16;
   const ChoiceOfLamps for_patch = takes_by_flux ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
   const ChoiceOfLamps& choice = takes_by_flux ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
@@ -259,7 +256,7 @@ double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) 
   return (there + from_no_patch) / whole - 1;
 }
 
-// What the rays of all quarters find, those of the first one first.
+// Adds the light of the rays of all quarters, those of the first one first.
 void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const {
   const auto rays = static_cast<std::size_t>(rays_.rays);
   const std::size_t first = 4 * std::size_t{patch};
@@ -267,7 +264,7 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
   std::vector<std::size_t> rays_that_meet;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (seen[k].sight != Sight::patch) continue;
-    points.push_back({seen[k].hit->polygon, seen[k].hit->side, seen[k].hit->point});
+    points.push_back({seen[k].met->polygon, seen[k].met->side, seen[k].met->point});
     rays_that_meet.push_back(k);
   }
   const std::vector<PatchIndex> met = lookup_.patches_at(points);
@@ -275,21 +272,21 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
   for (std::size_t m = 0; m < met.size(); ++m) {
     if (met[m] == no_patch) continue;
     const std::size_t k = rays_that_meet[m];
-    const Hit& hit = *seen[k].hit;
+    const Hit& hit = *seen[k].met;
     const auto quarter = static_cast<Eigen::Index>(first + k / rays);
     const PatchCorners corners = mesh_.corner_points(met[m]);
     const int of_met = quarter_at(corners, mesh_.normal[met[m]], hit.point);
     into.met[first * rays + k] = 4 * met[m] + static_cast<PatchIndex>(of_met);
     into.seen_as[first * rays + k] = is_open && is_far_from(corners, hit.distance) ? seen_as_whole : seen_as_quarter;
     if (may_be_darker_there(patch, met[m], hit))
-      into.seen_as[first * rays + k] = as_point(
-          more_at(met[m], hit.point, hash({seed_of(patch, Purpose::at_points), static_cast<std::uint64_t>(k)})));
+      into.seen_as[first * rays + k] = as_point(more_at(
+          met[m], hit.point, hash({seed_of(patch, stream::points_at_quarters), static_cast<std::uint64_t>(k)})));
     into.irradiance.row(quarter) += sent_.row(met[m]);
     if (finds_lamps(hit)) into.irradiance.row(quarter) += exitance_.row(met[m]);
   }
 }
 
-// The mean is that over what is exposed: of a patch that solids cover in part, rays that meet backs start inside one.
+// The mean is that over the exposed part: of a patch that solids cover in part, rays that meet backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
@@ -323,8 +320,7 @@ constexpr double steps_of_share = 50;
 }  // namespace
 
 std::uint8_t as_point(double more) {
-  constexpr double most = 4;
-  return static_cast<std::uint8_t>(first_code + std::lround(steps_of_share * (1 + std::clamp(more, -1.0, most))));
+  return static_cast<std::uint8_t>(first_code + std::lround(steps_of_share * (1 + std::clamp(more, -1.0, 4.0))));
 }
 
 std::optional<double> more_at_point(std::uint8_t seen_as) {
@@ -353,10 +349,10 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
 
 namespace {
 
-// What is seen of each patch from afar.
+// Each patch as it is seen from afar.
 struct SeenFromAfar {
   Field difference;                    // of its radiosity from the patch's mean, W/m^2
-  std::vector<std::uint8_t> is_known;  // 0: no ray has told
+  std::vector<std::uint8_t> is_known;  // 0: no ray has met it
 };
 
 // The differences of radiosity inside patches, as one set of rays finds them.
@@ -365,7 +361,7 @@ struct Differences {
   Field of_irradiance;    // of each quarter from the mean of its patch, W/m^2, as long as it is needed
   Field of_quarters;      // of radiosity, the same
   SeenFromAfar from_afar;
-  Field at_patches;  // what they change of the irradiance of each patch, W/m^2
+  Field at_patches;  // the change of the irradiance of each patch by them, W/m^2
   Field by_points;   // W: the part of these by single points, which quarters do not send; one row
 
   // Calls `visit` with each patch that is met from a quarter, the difference of radiosity there, one row, and whether
@@ -385,7 +381,7 @@ struct Differences {
   }
 };
 
-// H_q - H, where H is the mean over what is exposed of the quarters.
+// H_q - H, where H is the mean over the exposed parts of the quarters.
 Field differences_of_irradiance(const GatheredQuarters& rays, const FieldView& irradiance) {
   Field difference = Field::Zero(irradiance.rows(), irradiance.cols());
   for (Eigen::Index first = 0; first < irradiance.rows(); first += 4) {
@@ -494,7 +490,7 @@ Differences find_differences(GatheredQuarters rays, const Field& direct, const E
   return found;
 }
 
-// What the differences of each patch have in common with the changes that other rays find: sum_i w_i c_i dH_i.
+// The product of the differences of each patch with the changes that other rays find: sum_i w_i c_i dH_i.
 Eigen::VectorXd parts_in(const Field& weighted_changes, const Differences& differences, const Field& reflected) {
   Eigen::VectorXd parts = Eigen::VectorXd::Zero(weighted_changes.rows());
   for (PatchIndex q = 0; q < differences.rays.part_of_ray.size(); ++q) {
@@ -513,7 +509,7 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   const Eigen::VectorXd& area = solved.problem.area;
   // 1. Twice, with other rays.
   const auto gathered = [&](std::size_t half) {
-    return gather_at_quarters(patches, {look.rays, hash({look.seed, half, 0x9a7})}, observer);
+    return gather_at_quarters(patches, {look.rays, hash({look.seed, half, stream::halves_of_quarters})}, observer);
   };
   std::array<GatheredQuarters, 2> rays{gathered(0), gathered(1)};
   const std::array<Eigen::ArrayXd, 2> open{std::exchange(rays[0].open, {}), std::exchange(rays[1].open, {})};
@@ -531,7 +527,7 @@ UnseenDifferences unseen_differences(const SolvedPatches& patches, const Transpo
   unseen.display = root_of_mean(display_of(one, other));
   one.of_irradiance = other.of_irradiance = {};
 
-  // 2. Through all reflections; what is finer than the quarters is extrapolated.
+  // 2. Through all reflections; differences inside the quarters are extrapolated.
   const double scale = 1 / (1 - std::pow(2.0, -mesh_order));
   const auto through_reflections = [&](const Differences& differences, const Differences& of_other) -> Field {
     const Field change = followed(transport, solved.problem, with_flux_sent(area, differences, of_other.rays));

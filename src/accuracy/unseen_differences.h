@@ -14,15 +14,15 @@
 
 namespace patchlight {
 
-/// Emitting patches, to be chosen by about what they send somewhere.
+/// Emitting patches, to be chosen by about the flux that they send somewhere.
 struct ChoiceOfLamps {
   std::vector<PatchIndex> lamps;  ///< in the order of the mesh
-  std::vector<double> before;     ///< what those before each send, W; one more entry at the end
+  std::vector<double> before;     ///< the flux of those before each, W; one more entry at the end
 
   struct Chosen {
     PatchIndex lamp;
     double probability;
-    double u;  ///< what the choice leaves of the number, in [0, 1]
+    double u;  ///< the rest of the number after the choice, in [0, 1]
   };
 
   /// That of a patch to be chosen; 0 where it is none of them. O(log(lamps)).
@@ -32,16 +32,16 @@ struct ChoiceOfLamps {
   Chosen at(double u) const;
 };
 
-/// By what they send to a patch when nothing is in the way; all have some probability. O(lamps).
+/// By their flux to a patch when nothing is in the way; all have some probability. O(lamps).
 ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
                               const Field& exitance);
 
-/// By all that they send. O(lamps).
+/// By their whole flux. O(lamps).
 ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance);
 
 class Occluder;
 
-/// A solution on patches, and what stands between them.
+/// A solution on patches, and the occluder between them.
 struct SolvedPatches {
   const PatchMesh& mesh;
   const Occluder& occluder;
@@ -60,16 +60,16 @@ std::optional<double> more_at_point(std::uint8_t seen_as);  ///< nothing where i
 /// The results of the rays of all quarters: patch i has the quarters 4 i to 4 i + 3 (mesh/small_patches.h).
 struct GatheredQuarters {
   int rays = 0;      ///< from each quarter
-  Field irradiance;  ///< per quarter: mean over what is exposed of it, without luminaires, sun and sky, W/m^2
+  Field irradiance;  ///< per quarter: mean over the exposed part of it, without luminaires, sun and sky, W/m^2
   std::vector<PatchIndex> met;        ///< per quarter and ray: the quarter that it meets, or no_patch
   std::vector<std::uint8_t> seen_as;  ///< likewise: seen_as_quarter, seen_as_whole, or as_point() says
   Eigen::ArrayXd part_of_ray;         ///< per quarter: what part of the mean over its patch one of its rays is
-  Eigen::ArrayXd exposed;             ///< per quarter: what of its area no solid covers, m^2
+  Eigen::ArrayXd exposed;             ///< per quarter: the area that no solid covers, m^2
   Eigen::ArrayXd seen;                ///< per quarter: the share of its hemisphere in which there are patches
   Eigen::ArrayXd open;                ///< per quarter: the share of it in which there are patches, but none near
 };
 
-/// How many rays start at each quarter, a power of two, and what chooses them.
+/// How many rays start at each quarter, a power of two, and the seed that chooses them.
 struct RaysOfQuarters {
   int rays = 16;
   std::uint64_t seed = 1;
@@ -93,8 +93,8 @@ struct QuarterLook {
                                      ///< other rays; empty without these
 };
 
-/// What is behind the means of patches: light that differs inside a patch gets to others from the part that they see.
-/// Under a board close over a floor it is dark, however bright the mean of a patch that reaches under it.
+/// The differences behind the means of patches: light that differs inside a patch gets to others from the part that
+/// they see. Under a board close over a floor it is dark, however bright the mean of a patch that reaches under it.
 struct UnseenDifferences {
   Field error;  ///< of the mean irradiance of each patch, W/m^2
   Field noise;  ///< of which the square is what noise adds to that of the error, as far as sums over many patches tell,
@@ -105,10 +105,10 @@ struct UnseenDifferences {
 };
 
 /// Found by rays: the irradiance of each quarter is gathered from the patches, its difference from the mean of its
-/// patch is gathered again along the same rays, and that is followed through all reflections. What is inside the
-/// quarters is extrapolated (mesh_order). All this twice, with other rays: the product of the two has no bias by their
-/// noise, and its mean over the patches around has less of it. `weight` is that of each patch in the error. O(size)
-/// rays. \throws Cancelled.
+/// patch is gathered again along the same rays, and that is followed through all reflections. Differences inside
+/// the quarters are extrapolated (mesh_order). All this twice, with other rays: the product of the two has no bias by
+/// their noise, and its mean over the patches around has less of it. `weight` is that of each patch in the error.
+/// O(size) rays. \throws Cancelled.
 UnseenDifferences unseen_differences(const SolvedPatches& patches, const TransportOperator& transport,
                                      const Eigen::VectorXd& weight, const QuarterLook& look, const Observer& observer);
 

@@ -10,31 +10,23 @@
 #include <numbers>
 
 namespace patchlight {
-namespace {
 
-constexpr std::uint32_t most_scrambles = 256;
-constexpr std::uint32_t most_entries = 1U << 22;  // of the table, so that it stays below 150 MB
-constexpr std::size_t coordinates = 4;
-
-}  // namespace
-
+// At most 256 scrambles, and so many that the table stays below 150 MB.
 SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
-    : samples_(samples), scrambles_(std::clamp(most_entries / samples, 16U, most_scrambles)), seed_(seed) {
-  table_.resize(std::size_t{scrambles_} * coordinates * samples);
+    : samples_(samples), scrambles_(std::clamp((1U << 22) / samples, 16U, 256U)), seed_(seed) {
+  table_.resize(std::size_t{scrambles_} * 4 * samples);
   for (std::uint32_t scramble = 0; scramble < scrambles_; ++scramble) {
     const auto points = scrambled_sobol(samples, hash({seed, scramble}));
-    std::uint32_t* const rows = table_.data() + std::size_t{scramble} * coordinates * samples;
-    for (std::size_t k = 0; k < samples; ++k) {
-      for (std::size_t d = 0; d < coordinates; ++d)
-        rows[d * samples + k] = static_cast<std::uint32_t>(points[k][d] * 0x1p32);
-    }
+    std::uint32_t* const rows = table_.data() + std::size_t{scramble} * 4 * samples;
+    for (std::size_t k = 0; k < samples; ++k)
+      for (std::size_t d = 0; d < 4; ++d) rows[d * samples + k] = static_cast<std::uint32_t>(points[k][d] * 0x1p32);
   }
 }
 
 SampleSet SampleTable::of_pair(std::uint32_t first_key, std::uint32_t second_key, std::uint32_t replicate) const {
   const std::uint32_t key = hash(first_key ^ hash(second_key ^ hash(static_cast<std::uint32_t>(seed_))));
   const std::uint32_t scramble = (key % scrambles_ + replicate) % scrambles_;
-  SampleSet set{table_.data() + std::size_t{scramble} * coordinates * samples_, samples_, {}};
+  SampleSet set{table_.data() + std::size_t{scramble} * 4 * samples_, samples_, {}};
   std::uint32_t state = hash(key + replicate);
   for (std::uint32_t& shift : set.shift) shift = state = hash(state + 0x9e3779b9U);
   return set;
@@ -56,14 +48,9 @@ std::array<float, 3> narrow(const Vector& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-// Rays in single precision may pass a wall on whose foot a patch ends when they start nearer to it than some 3e-7 of
-// the scene's extent (Occluder): samples keep away from the patch's border by this length, in the frame's unit.
-constexpr double border = 5e-7;
-
-// By this share at most of the way to the centroid.
-constexpr double widest_border = 1e-3;
-
-// The corners moved towards the centroid so far that all of the border moves inward by `border`.
+// The corners moved toward the centroid until the border lies 5e-7 of the scene's extent inside, at most 1e-3 of the
+// way. Rays in single precision that start within some 3e-7 of a wall on whose foot a patch ends may pass it
+// (Occluder).
 std::array<Point, 4> inner_corners(const PatchShape& shape, double scale) {
   const auto& [points, count] = shape.corners;
   double nearest = std::numeric_limits<double>::infinity();
@@ -71,7 +58,7 @@ std::array<Point, 4> inner_corners(const PatchShape& shape, double scale) {
     const Vector edge = points[(k + 1) % count] - points[k];
     if (edge.norm() > 0) nearest = std::min(nearest, edge.cross(shape.centroid - points[k]).norm() / edge.norm());
   }
-  const double share = std::min(widest_border, border / (scale * nearest));
+  const double share = std::min(1e-3, 5e-7 / (scale * nearest));
   std::array<Point, 4> inner = points;
   for (Point& point : inner) point += share * (shape.centroid - point);
   return inner;

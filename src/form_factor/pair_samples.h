@@ -21,14 +21,13 @@ struct SampleSet {
   std::array<std::uint32_t, 4> shift{};  ///< of each coordinate; to be added without carry
 };
 
-/// What a coordinate of a net is after the shift: strictly between 0 and 1, with 24 bits.
+/// A coordinate of a net after the shift: strictly between 0 and 1, with 24 bits.
 inline float shifted(std::uint32_t net, std::uint32_t shift) {
   return (static_cast<float>(static_cast<std::int32_t>((net ^ shift) >> 9)) + 0.5F) * 0x1p-23F;
 }
 
-/// Pairs of points on two patches, from scrambled Sobol sequences kept in a table. Which scramble a pair of patches
-/// uses, and how it is shifted, follows from the seed and the two patches' keys alone. Pairs that have the scramble in
-/// common do not err alike, as their shifts differ.
+/// Pairs of points on two patches, from scrambled Sobol sequences kept in a table. The seed and the two patches' keys
+/// choose the scramble of a pair and its shift. Pairs that share a scramble do not err alike, as their shifts differ.
 class SampleTable {
  public:
   /// `samples` is the largest number of samples of one pair of patches.
@@ -59,7 +58,7 @@ struct SampledPatch {
 /// The patch of a shape, whose polygon is `polygon`, in the frame of an occluder.
 SampledPatch sampled_patch(const PatchShape& shape, PolygonIndex polygon, const TracingFrame& frame);
 
-/// The samples of up to sixteen shadow rays and what each contributes to its pair's mean geometry term.
+/// The samples of up to sixteen shadow rays and the part of each in its pair's mean geometry term.
 struct PairSamples {
   ShadowPacket rays;
   alignas(64) std::array<float, ShadowPacket::size> weight;  ///< times the two areas: exchange area

@@ -1,6 +1,7 @@
 #include "form_factor/patch_cluster.h"
 
 #include "base/target_clones.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <cassert>
@@ -13,15 +14,6 @@
 
 namespace patchlight {
 namespace {
-
-// Planes that differ by less count as one; share of the unit, and of 1 for the normals.
-constexpr double plane_resolution = 1e-6;
-
-// On a plane with fewer patches than this, clusters are made with those of other planes.
-constexpr std::size_t least_on_plane = 6;
-
-// A model is no larger than so many times the root of its area, or some of it lies far away.
-constexpr double roomy = 10;
 
 using Members = std::vector<PatchIndex>;
 
@@ -93,10 +85,10 @@ void divide(const PatchMesh& mesh, std::span<PatchIndex> members, std::vector<Me
   divide(mesh, members.subspan(half), leaves);
 }
 
-// Patches by the plane they lie in and the side they face.
+// Patches by the plane they lie in and the side they face. Offsets count as shares of the unit.
 std::vector<Members> by_plane(const PatchMesh& mesh, double unit) {
   std::map<std::array<std::int64_t, 4>, Members> planes;
-  const auto rounded = [](double x) { return std::llround(x / plane_resolution); };
+  const auto rounded = [](double x) { return std::llround(x / tolerance_of_coordinates); };
   const Point origin = mesh.centroid[0];
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Vector& n = mesh.normal[i];
@@ -115,9 +107,9 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
   if (mesh.size() == 0) return clusters;
   Box box;
   for (const PatchShape& shape : shapes) box.extend(shape.centroid);
-  // Patches far away from all others do not make it larger.
+  // A model larger than 10 times the root of its area has patches far away from all others, which do not count.
   const double unit = std::min(box.diagonal().norm() + shapes[0].radius,
-                               roomy * std::sqrt(std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0)));
+                               10 * std::sqrt(std::accumulate(mesh.area.begin(), mesh.area.end(), 0.0)));
   Members others;
   const auto add = [&](Members& members, bool is_planar) {
     std::vector<Members> leaves;
@@ -125,7 +117,8 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
     for (const Members& leaf : leaves) clusters.push_back(cluster_of(mesh, shapes, leaf, unit, is_planar));
   };
   for (Members& members : by_plane(mesh, unit)) {
-    if (members.size() >= least_on_plane) {
+    // Fewer patches on a plane are clustered with those of other planes.
+    if (members.size() >= 6) {
       add(members, true);
     } else {
       others.insert(others.end(), members.begin(), members.end());
@@ -142,18 +135,8 @@ namespace {
 
 // Loops over lanes are written so that the compiler turns them into vector instructions.
 
-// As for unoccluded_exchange_area(): pairs nearer than these, in diameters of the larger patch, are computed by the
-// contour integral, and with the fine rules.
-constexpr float near_reach = 2;
-constexpr float middle_reach = 4;
-
-// Heights count as zero below this share of the radii, and of the distance, which is what rounding leaves of them.
-constexpr float single_height_tolerance = 1e-7F;
+// Rounding in single precision leaves this share of the distance of a height.
 constexpr float height_rounding = 4e-7F;
-
-// A coordinate and its differences are right to this share of the largest; distances have to be known better than this.
-constexpr float position_rounding = 1.2e-7F;
-constexpr float distance_tolerance = 1e-4F;
 
 struct Float3 {
   float x, y, z;
@@ -226,16 +209,17 @@ PATCHLIGHT_INLINE Heights heights(const PatchCluster& first, int lane, const Flo
 
 enum class Zone : std::uint8_t { none = 0, exact = 1, middle = 2, far = 3 };
 
-// What each pair of the row needs.
+// The zone of each pair of the row.
 PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float3& shift, const PatchCluster& second,
                                 std::array<std::int32_t, Lanes::count>& zone) {
   const Heights h = heights(first, lane, shift, second);
   const Float3 centroid = minus(lane_of(first.centroid, lane), shift);
   const float radius = first.radius.at[static_cast<std::size_t>(lane)];
-  // Patches of clusters that are wide against the patches' distance are left to double precision.
+  // A coordinate and its differences are right to 1.2e-7 of the largest. Patches whose distance is not known to 1e-4,
+  // as their clusters are wide against it, are left to double precision.
   const float rounding =
-      position_rounding * (first.reach + second.reach + std::abs(shift.x) + std::abs(shift.y) + std::abs(shift.z));
-  const float least = rounding * rounding / (distance_tolerance * distance_tolerance);
+      1.2e-7F * (first.reach + second.reach + std::abs(shift.x) + std::abs(shift.y) + std::abs(shift.z));
+  const float least = rounding * rounding / (1e-4F * 1e-4F);
   for (std::size_t l = 0; l < Lanes::count; ++l) {
     const float x = second.centroid.x.at[l] - centroid.x;
     const float y = second.centroid.y.at[l] - centroid.y;
@@ -243,16 +227,16 @@ PATCHLIGHT_INLINE void classify(const PatchCluster& first, int lane, const Float
     const float squared = x * x + y * y + z * z;
     const float larger = std::max(radius, second.radius.at[l]);
     const float reach = squared / (4 * larger * larger);
-    const float tolerance = single_height_tolerance * (radius + second.radius.at[l]) +
+    const float tolerance = static_cast<float>(height_tolerance) * (radius + second.radius.at[l]) +
                             height_rounding * (std::abs(x) + std::abs(y) + std::abs(z));
     const int coarse = static_cast<int>(squared < least);
     const float lowest_seen = coarse != 0 ? -rounding : tolerance;
     const int facing =
         static_cast<int>(h.highest.at[l] > lowest_seen) & static_cast<int>(h.highest_of_one.at[l] > lowest_seen);
-    const int exact = coarse | static_cast<int>(reach < near_reach * near_reach) |
+    const int exact = coarse | static_cast<int>(reach < static_cast<float>(near_diameters * near_diameters)) |
                       static_cast<int>(h.lowest.at[l] < -tolerance) |
                       static_cast<int>(h.lowest_of_one.at[l] < -tolerance);
-    const int far = static_cast<int>(reach >= middle_reach * middle_reach);
+    const int far = static_cast<int>(reach >= static_cast<float>(far_diameters * far_diameters));
     zone[l] = facing * (exact + (1 - exact) * (2 + far));
   }
 }

@@ -1,19 +1,18 @@
 #include "form_factor/patch_shape.h"
 
+#include "base/sampling.h"
+#include "base/tolerances.h"
+
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
 namespace patchlight {
 namespace {
-
-// Edges closer to one line than this share of their length are integrated as collinear.
-constexpr double collinear_tolerance = 1e-12;
-
-// Directions that differ by a smaller sine count as parallel.
-constexpr double parallel_tolerance = 1e-12;
 
 struct Edge {
   Point start;
@@ -79,12 +78,10 @@ double double_log_integral(const Edge& a, const Edge& b) {
   const double along_end = end.dot(b.direction);
   const double h_start = (start - along_start * b.direction).norm();
   const double h_end = (end - along_end * b.direction).norm();
-  if (std::max(h_start, h_end) <= collinear_tolerance * (a.length + b.length)) {
+  if (std::max(h_start, h_end) <= tolerance_of_arithmetic * (a.length + b.length))
     return parallel_integral(along_start, along_end, b.length, 0);
-  }
-  if (b.direction.cross(a.direction).norm() <= parallel_tolerance) {
+  if (b.direction.cross(a.direction).norm() <= tolerance_of_arithmetic)
     return parallel_integral(along_start, along_end, b.length, 0.5 * (h_start + h_end));
-  }
 
   // 2. Far apart the integrand is smooth.
   const auto integrand = [&](double s) { return inner_integral(a.start + s * a.direction, b); };
@@ -123,13 +120,6 @@ double contour_exchange_area(std::span<const Point> first, std::span<const Point
 }
 
 namespace {
-
-// Heights below this share of the two radii count as zero: coplanar patches do not see each other.
-constexpr double height_tolerance = 1e-7;
-
-constexpr double adjacent_diameters = 1;
-constexpr double near_diameters = 2;
-constexpr double middle_diameters = 4;
 
 template <int capacity>
 void add_point(Quadrature<capacity>& rule, const Point& point, double weight) {
@@ -187,9 +177,8 @@ Quadrature<capacity> quadrilateral(const PatchCorners& corners, const Vector& no
 // With the centroid, the normal and the area as they are.
 PatchShape finished(PatchShape shape) {
   const auto& p = shape.corners.points;
-  for (int k = 0; k < shape.corners.count; ++k) {
-    shape.radius = std::max(shape.radius, (p[static_cast<std::size_t>(k)] - shape.centroid).norm());
-  }
+  for (const Point& corner : std::span<const Point>(shape.corners))
+    shape.radius = std::max(shape.radius, (corner - shape.centroid).norm());
   if (shape.corners.count == 3) {
     shape.coarse = coarse_triangle(p[0], p[1], p[2], shape.area);
     shape.fine = fine_triangle(p[0], p[1], p[2], shape.area);
@@ -245,19 +234,19 @@ double clipped_quadrature(const PatchShape& first, const PatchShape& second) {
 
 // Lowest and highest corner of `patch` over the plane of `plane`.
 std::array<double, 2> heights(const PatchShape& patch, const PatchShape& plane) {
-  double lowest = 0;
-  double highest = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners.count); ++k) {
-    const double height = plane.normal.dot(patch.corners.points[k] - plane.centroid);
-    lowest = k == 0 ? height : std::min(lowest, height);
-    highest = k == 0 ? height : std::max(highest, height);
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const Point& corner : std::span<const Point>(patch.corners)) {
+    const double height = plane.normal.dot(corner - plane.centroid);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
   }
   return {lowest, highest};
 }
 
 bool closer_than(const PatchShape& first, const PatchShape& second, double diameters) {
-  constexpr double rounding = 1e-9;  // the same answer for distances that are equal but for it
-  const double limit = (1 - rounding) * 2 * diameters * std::max(first.radius, second.radius);
+  // The same answer for distances that are equal but for rounding.
+  const double limit = (1 - tolerance_of_shapes) * 2 * diameters * std::max(first.radius, second.radius);
   return (second.centroid - first.centroid).squaredNorm() < limit * limit;
 }
 
@@ -290,20 +279,121 @@ Orientation orientation(const PatchShape& first, const PatchShape& second) {
 
 bool is_near(const PatchShape& first, const PatchShape& second) { return closer_than(first, second, near_diameters); }
 
-bool is_adjacent(const PatchShape& first, const PatchShape& second) {
-  return closer_than(first, second, adjacent_diameters);
-}
+bool is_adjacent(const PatchShape& first, const PatchShape& second) { return closer_than(first, second, 1); }
 
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second, FarRule far) {
   if (is_near(first, second)) return contour_exchange_area(first.corners, second.corners);
   const auto by_quadrature = [&] {
     if (orientation(first, second) == Orientation::straddling) return clipped_quadrature(first, second);
-    if (far == FarRule::fine || closer_than(first, second, middle_diameters))
+    if (far == FarRule::fine || closer_than(first, second, far_diameters))
       return product_quadrature(first.fine, first.normal, second.fine, second.normal);
     return product_quadrature(first.coarse, first.normal, second.coarse, second.normal);
   };
   // Of strips as narrow as their corners are rounded some points may look away.
   return std::max(0.0, by_quadrature());
+}
+
+namespace {
+
+// Where a scene lies: coordinates in it are axes^T (x - centre) / size.
+struct Frame {
+  Point centre;
+  Eigen::Matrix3d axes;
+  double size = 1;
+};
+
+// The principal axes of the second moments; the axes of the file where two moments are equal.
+Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& moments) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  const Eigen::Vector3d& values = solver.eigenvalues();
+  const double smallest_gap = std::min(values[1] - values[0], values[2] - values[1]);
+  return smallest_gap > tolerance_of_coordinates * values.sum() ? solver.eigenvectors() : Eigen::Matrix3d::Identity();
+}
+
+// Calls use(A, B, C) for the triangles of a patch.
+template <typename Use>
+void for_triangles(const PatchMesh& mesh, PatchIndex patch, Use use) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  for (std::size_t k = 2; k < static_cast<std::size_t>(corners.count); ++k)
+    use(corners.points[0], corners.points[k - 1], corners.points[k]);
+}
+
+double triangle_area(const Point& a, const Point& b, const Point& c) { return (b - a).cross(c - a).norm() / 2; }
+
+// The integral of x x^T over a triangle.
+Eigen::Matrix3d second_moments(const Vector& a, const Vector& b, const Vector& c) {
+  const Vector sum = a + b + c;
+  return triangle_area(a, b, c) / 12 *
+         (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+}
+
+// The integral over a triangle of the cube of each coordinate: a tenth of the area times the sum of all ten products of
+// three of its values at the corners.
+Vector third_moments(const Vector& a, const Vector& b, const Vector& c) {
+  const Eigen::Array3d x = a.array(), y = b.array(), z = c.array();
+  const Eigen::Array3d products =
+      x.cube() + y.cube() + z.cube() + x.square() * (y + z) + y.square() * (x + z) + z.square() * (x + y) + x * y * z;
+  return triangle_area(a, b, c) / 10 * products.matrix();
+}
+
+// Each axis points to the side of its third moment, or if that vanishes to the side of its largest coordinate.
+Eigen::Matrix3d oriented(Eigen::Matrix3d axes, const Point& centre, double size, const PatchMesh& mesh) {
+  Vector third = Vector::Zero();
+  double total = 0;
+  const auto local = [&](const Point& point) -> Vector { return axes.transpose() * (point - centre); };
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for_triangles(mesh, i, [&](const Point& a, const Point& b, const Point& c) {
+      third += third_moments(local(a), local(b), local(c));
+    });
+    total += mesh.area[i];
+  }
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Eigen::Index largest = 0;
+    axes.col(axis).cwiseAbs().maxCoeff(&largest);
+    const bool symmetric = std::abs(third[axis]) <= tolerance_of_coordinates * total * size * size * size;
+    const double direction = symmetric ? axes(largest, axis) : third[axis];
+    if (direction < 0) axes.col(axis) *= -1;
+  }
+  return axes;
+}
+
+// By moments of the surfaces, not of the patches' centroids: however they are cut, it stays.
+Frame scene_frame(const PatchMesh& mesh) {
+  double total = 0;
+  Vector sum = Vector::Zero();
+  const Point origin = mesh.centroid[0];
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    total += mesh.area[i];
+    sum += mesh.area[i] * (mesh.centroid[i] - origin);
+  }
+  const Point centre = origin + sum / total;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for_triangles(mesh, i, [&](const Point& a, const Point& b, const Point& c) {
+      moments += second_moments(a - centre, b - centre, c - centre) / total;
+    });
+  }
+  const double size = std::sqrt(moments.trace());
+  return {centre, oriented(principal_axes(moments), centre, size, mesh), size};
+}
+
+// Coordinates in steps of 1e-4 of the scene's size: far above the rounding errors of files in single precision.
+std::uint64_t step_of(double x) { return static_cast<std::uint64_t>(std::llround(x / 1e-4)); }
+
+}  // namespace
+
+std::vector<std::uint32_t> patch_keys(const PatchMesh& mesh) {
+  std::vector<std::uint32_t> keys;
+  if (mesh.size() == 0) return keys;
+  const Frame frame = scene_frame(mesh);
+  const double scale = frame.size > 0 ? 1 / frame.size : 1;
+  keys.reserve(mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const Vector position = scale * frame.axes.transpose() * (mesh.centroid[i] - frame.centre);
+    const double facing = mesh.normal[i].dot(frame.axes * Vector(1, 2, 4));  // tells the two sides of a polygon apart
+    keys.push_back(hash({step_of(position.x()), step_of(position.y()), step_of(position.z()), facing > 0 ? 1U : 0U}));
+  }
+  return keys;
 }
 
 }  // namespace patchlight

@@ -4,13 +4,14 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace patchlight {
 
 /// Unoccluded exchange area A_1 F_12 in m^2 of two planar convex polygons that may touch, cross each other's plane, or
-/// share an edge; each faces the side from which its corners run counter-clockwise. What lies behind the other's plane
+/// share an edge; each faces the side from which its corners run counter-clockwise. The part behind the other's plane
 /// is clipped away first. Relative error below 1e-6 for touching polygons of aspect up to 10, far less for separate
 /// ones, below 1e-4 for those that cross each other's plane. Symmetric in its arguments up to these errors. Schröder
 /// and Hanrahan 1993 give the closed form; here Stokes' double contour integral (Sparrow 1963) with the inner integral
@@ -54,18 +55,33 @@ enum class Orientation {
 /// Tells how the two stand to each other, in whichever order they are given.
 Orientation orientation(const PatchShape& first, const PatchShape& second);
 
-/// Closer than two diameters of the larger patch: the geometry term varies too much for quadrature or area sampling.
+/// Patches closer than so many diameters of the larger one are near.
+inline constexpr double near_diameters = 2;
+
+/// Patches farther apart than so many diameters of the larger one take the quadrature of the lowest order.
+inline constexpr double far_diameters = 4;
+
+/// Heights below this share of the two radii count as zero: coplanar patches do not see each other.
+inline constexpr double height_tolerance = 1e-7;
+
+/// True for near patches: the geometry term varies too much for quadrature or area sampling.
 bool is_near(const PatchShape& first, const PatchShape& second);
 
 /// Closer than one diameter of the larger patch: even the visible part is sampled by solid angle.
 bool is_adjacent(const PatchShape& first, const PatchShape& second);
 
-/// The quadrature between patches more than four diameters of the larger apart.
+/// The quadrature between patches more than far_diameters apart.
 enum class FarRule { coarse, fine };
 
 /// Unoccluded exchange area A_i F_ij in m^2 of two patches that are not averted: the contour integral for near patches,
 /// product quadrature for others. Relative error below 3e-3, and 1e-3 where no cosine is below 0.1; a few per cent
 /// where one patch barely rises over the other's plane, so that the form factor is below 1e-9.
 double unoccluded_exchange_area(const PatchShape& first, const PatchShape& second, FarRule far = FarRule::coarse);
+
+/// A number per patch that chooses its random points. It follows from where the patch lies in a frame of the scene's
+/// own: its centroid, size and principal axes. So the answer does not change when the model is moved or scaled or its
+/// faces are given in another order, nor when it is turned, unless it has a symmetry: then the frame is ambiguous,
+/// turning it may change the keys, and with them the answer within its statistical error.
+std::vector<std::uint32_t> patch_keys(const PatchMesh& mesh);
 
 }  // namespace patchlight

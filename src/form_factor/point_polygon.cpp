@@ -8,7 +8,7 @@
 namespace patchlight {
 
 double point_to_polygon(const Point& point, const Vector& normal, std::span<const Point> polygon) {
-  // Cut away what lies below the horizon; most polygons lie above.
+  // Cut away the part below the horizon; most polygons lie above.
   const auto below = [&](const Point& corner) { return normal.dot(corner - point) < 0; };
   std::vector<Point> clipped;
   if (std::any_of(polygon.begin(), polygon.end(), below)) {
@@ -29,10 +29,6 @@ double point_to_polygon(const Point& point, const Vector& normal, std::span<cons
 }
 
 namespace {
-
-// Below this solid angle, in sr, the formulas for spherical triangles cancel; the triangle is then sampled as if it
-// were plane.
-constexpr double smallest_solid_angle = 1e-4;
 
 // The part of `vector` orthogonal to the unit vector `axis`, as a unit vector.
 Vector orthogonal_part(const Vector& vector, const Vector& axis) {
@@ -94,8 +90,9 @@ SeenPoint sample_seen_point(const Point& from, std::span<const Point> polygon, d
   const Point& c = polygon[k + 2];
   const Vector plane_normal = (b - a).cross(c - a);
 
-  // 2. A small triangle as if it were plane: by area, which counts for cos / d^2 of the solid angle.
-  if (fan.solid_angles[k] < smallest_solid_angle) {
+  // 2. A triangle so small that the formulas for spherical ones cancel, as if it were plane: by area, which counts for
+  //    cos / d^2 of the solid angle.
+  if (fan.solid_angles[k] < 1e-4) {
     const double root = std::sqrt(stretched);
     const Point point = a + root * (1 - v) * (b - a) + root * v * (c - a);
     const Vector way = from - point;
@@ -106,8 +103,7 @@ SeenPoint sample_seen_point(const Point& from, std::span<const Point> polygon, d
                                                         (c - from).normalized(), fan.solid_angles[k], stretched, v);
   const Point point = from + plane_normal.dot(a - from) / plane_normal.dot(direction) * direction;
   // From a point on an edge or in the plane itself the spherical triangle has no angle: any point of it will do.
-  if (!point.allFinite()) return {(a + b + c) / 3, fan.total, 1};
-  return {point, fan.total, 1};
+  return {point.allFinite() ? point : Point((a + b + c) / 3), fan.total, 1};
 }
 
 PolygonSample sample_solid_angle(const Point& from, const Vector& normal, std::span<const Point> polygon, double u,

@@ -23,7 +23,7 @@ struct SeenPoint {
 /// of f over the solid angle. Arvo 1995, Stratified Sampling of Spherical Triangles.
 SeenPoint sample_seen_point(const Point& from, std::span<const Point> polygon, double u, double v);
 
-/// A point of a polygon chosen at random, and what it contributes to the mean that is the form factor.
+/// A point of a polygon chosen at random, and its part in the mean that is the form factor.
 struct PolygonSample {
   Point point;
   double weight = 0;  ///< its mean over (u, v) is the unoccluded form factor from the point to the polygon

@@ -5,7 +5,6 @@
 
 #include "light/pane.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <array>
 #include <memory>

@@ -6,7 +6,7 @@
 #include "mesh/nested_mesh.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
-#include "visibility/tracing.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -17,7 +17,6 @@
 #include "pipeline/second_mesh.h"
 #include "plan/goal.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "lighting/lighting.h"
-#include "visibility/tracing.h"
+#include "visibility/occluder.h"
 
 #include <Eigen/Core>
 #include <memory>

@@ -13,7 +13,6 @@
 #include "python/bindings.h"
 #include "python/interrupt_flag.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <limits>

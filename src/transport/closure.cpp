@@ -1,6 +1,7 @@
 #include "transport/closure.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/transport/exchange.h"
 
 #include "base/parallel.h"
 #include "base/vectors.h"
@@ -43,23 +44,17 @@ namespace {
 // docs/theory/closure.md.
 constexpr double entry_error = 0.02;
 
-// The same of one that was found without shadow rays: quadrature and rounding.
-constexpr double least_error = 1e-4;
-
-// Partial sums are kept per stripe of parts; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex part_stripes = 8;
-
 // Row sums of a closed scene are met to this share of the area; narrowing to float then loses more than that.
 constexpr double row_tolerance = 1e-10;
 constexpr int max_iterations = 2000;
 
 Field column(const Eigen::VectorXd& x) { return x.array(); }
 
-void report(const Observer& observer, double fraction) {
-  if (observer && !observer({.stage = Stage::closure, .fraction = fraction})) throw Cancelled();
+void report(const Observer& observer) {
+  if (observer && !observer({.stage = Stage::closure, .fraction = 0})) throw Cancelled();
 }
 
-// What the rows should sum up to, and how well that is known.
+// The sums that the rows should have, and how well they are known.
 struct Target {
   Eigen::VectorXd sum;       // a_i = A_i (1 - lost_i), m^2
   Eigen::VectorXd variance;  // of a_i, m^4
@@ -74,19 +69,19 @@ Target target_of(const Eigen::VectorXd& area, const LostShare& lost) {
   return {area.array() * (1 - share), area.array().square() * p * (1 - p) / n};
 }
 
-// The variances W_ij of the entries: what of them is known, or the same relative error for all. Entries that are 0 have
-// none, as they stay 0.
+// The variances W_ij of the entries: the known ones, or those by the same relative error for all where `known` is null.
+// Entries that are 0 have none, as they stay 0.
 class EntryWeights {
  public:
-  explicit EntryWeights(const ExchangeAreas& S) : S_(S) {}
-  EntryWeights(const ExchangeAreas& S, const KnownErrors& known, const Eigen::VectorXd& area)
-      : S_(S), known_(&known), area_(&area) {
-    for (std::size_t bin = 0; bin < SamplingError::bins; ++bin)
-      estimates_audited_ = estimates_audited_ || with_visible_share(known.sampling, bin).pairs > 0;
+  EntryWeights(const ExchangeAreas& S, const KnownErrors* known, const Eigen::VectorXd& area)
+      : S_(S), known_(known), area_(area) {
+    for (std::size_t bin = 0; known && bin < SamplingError::bins; ++bin)
+      estimates_audited_ = estimates_audited_ || with_visible_share(known->sampling, bin).pairs > 0;
   }
 
   double at(PatchIndex i, PatchIndex j, double entry) const {
-    const double sigma = std::max(standard_error(i, j, entry), (known_ ? least_error : entry_error) * entry);
+    // Quadrature and rounding leave 1e-4 of an entry that was found without shadow rays.
+    const double sigma = std::max(standard_error(i, j, entry), (known_ ? 1e-4 : entry_error) * entry);
     return sigma * sigma;
   }
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
@@ -95,8 +90,8 @@ class EntryWeights {
   double standard_error(PatchIndex i, PatchIndex j, double entry) const;
 
   const ExchangeAreas& S_;
-  const KnownErrors* known_ = nullptr;
-  const Eigen::VectorXd* area_ = nullptr;
+  const KnownErrors* known_;
+  const Eigen::VectorXd& area_;
   bool estimates_audited_ = false;
 };
 
@@ -107,25 +102,20 @@ double EntryWeights::standard_error(PatchIndex i, PatchIndex j, double entry) co
   if (kind == EntryKind::exact || kind == EntryKind::all_hidden) return 0;
   if (kind == EntryKind::estimated)
     return estimates_audited_ ? known_->entries.standard_error(i, j) : entry_error * entry;
-  const std::uint32_t effort = sampling_effort(entry / std::min((*area_)[i], (*area_)[j]));
+  const std::uint32_t effort = sampling_effort(entry / std::min(area_[i], area_[j]));
   return entry * patchlight::standard_error(known_->sampling.visible, effort);
 }
 
 Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
   if (known_ == nullptr) return entry_error * entry_error * multiply(S_, column(x), 2).matrix();
-  std::vector<Eigen::VectorXd> partial(part_stripes, Eigen::VectorXd::Zero(x.size()));
-  parallel_for(part_stripes, [&](std::size_t stripe) {
-    Eigen::VectorXd& sum = partial[stripe];
-    for (auto part = static_cast<PatchIndex>(stripe); part < entry_parts(S_); part += part_stripes) {
-      for_entries(S_, part, [&](PatchIndex i, PatchIndex j, double entry) {
-        const double weight = at(i, j, entry);
-        sum[i] += weight * x[j];
-        sum[j] += weight * x[i];
-      });
-    }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(x.size());
+  return sum_over_stripes(entry_parts(S_), stripes, zero, [&](PatchIndex part, Eigen::VectorXd& sum) {
+    for_entries(S_, part, [&](PatchIndex i, PatchIndex j, double entry) {
+      const double weight = at(i, j, entry);
+      sum[i] += weight * x[j];
+      sum[j] += weight * x[i];
+    });
   });
-  for (std::size_t stripe = 1; stripe < part_stripes; ++stripe) partial[0] += partial[stripe];
-  return partial[0];
 }
 
 // Solves (W + diag(W 1) + diag(s^2)) lambda = a - S 1 by conjugate gradients with diagonal preconditioning. Rows
@@ -146,7 +136,7 @@ std::optional<Eigen::VectorXd> row_multipliers(const EntryWeights& W, const Eige
       [&](const Eigen::VectorXd& r) -> Eigen::VectorXd { return (r.array() * inverse).matrix(); });
   for (int k = 0; k < max_iterations; ++k) {
     if ((method.residual().array().abs() <= row_tolerance * area.array()).all()) return lambda;
-    report(observer, 0);
+    report(observer);
     const Eigen::VectorXd q = apply(method.direction());
     const double step = method.length(q);
     if (!std::isfinite(step)) return std::nullopt;
@@ -172,7 +162,7 @@ std::optional<Eigen::VectorXd> row_scales(const ExchangeAreas& S, const Eigen::V
                                           const Observer& observer) {
   Eigen::ArrayXd d = Eigen::ArrayXd::Ones(target.size());
   for (int k = 0; k < max_iterations; ++k) {
-    report(observer, 0);
+    report(observer);
     const Eigen::ArrayXd sums = d * multiply(S, column(d.matrix())).col(0);
     const Eigen::ArrayXd ratio = (sums > 0).select(target.array() / sums, 1.0);
     if (((ratio - 1).abs() <= row_tolerance).all()) return d.matrix();
@@ -195,7 +185,7 @@ ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, cons
           std::string(cut_row_sums) + ": open scene, and the least change has negative entries"};
 }
 
-// What it takes to close.
+// The input of closure beside the entries.
 struct Wanted {
   const Eigen::VectorXd& area;
   const LostShare& lost;
@@ -207,7 +197,7 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   const auto& [area, lost, known, observer] = wanted;
   const Target target = target_of(area, lost);
   const Eigen::VectorXd raw_sums = row_sums(raw);
-  const EntryWeights W = known ? EntryWeights(raw, *known, area) : EntryWeights(raw);
+  const EntryWeights W(raw, known, area);
 
   // 1. The least change: S_ij += W_ij (lambda_i + lambda_j).
   const auto lambda = row_multipliers(W, target.sum - raw_sums, target, area, observer);
@@ -266,9 +256,6 @@ Eigen::MatrixXd exchange_between_groups(const ExchangeAreas& S, std::span<const 
 
 namespace {
 
-// Partial sums are kept per stripe of parents; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex parent_stripes = 16;
-
 struct Effects {
   const ExchangeAreas& S;
   const FieldView& difference;
@@ -306,7 +293,7 @@ ClosedExchangeAreas merged(const ClosedExchangeAreas& closed, const NestedMesh& 
       sums.set(H, G, narrow_toward_zero(sum));
     }
   });
-  // What narrowing took, and what the patches of a parent keep among themselves.
+  // The loss by narrowing, and the exchange of the patches of a parent among themselves.
   const Field rows = summed_by_parent(mesh, (row_sums(S) + closed.remainder).array());
   Eigen::VectorXd remainder = rows.col(0).matrix() - row_sums(sums);
   return {std::move(sums), std::move(remainder), closed.method};
@@ -317,19 +304,58 @@ Eigen::VectorXd effects_of_parts(const ExchangeAreas& S, const NestedMesh& mesh,
   const PatchIndex count = mesh.parents.size();
   if (difference.isZero(0)) return Eigen::VectorXd::Zero(count);
   const Effects effects{S, difference, weight};
-  std::vector<Eigen::VectorXd> partial(parent_stripes, Eigen::VectorXd::Zero(count));
-  parallel_for(parent_stripes, [&](std::size_t stripe) {
-    for (auto G = static_cast<PatchIndex>(stripe); G < count; G += parent_stripes) {
-      const PatchRange g = mesh.patches_of(G);
-      for (PatchIndex H = 0; H < G; ++H) {
-        const PatchRange h = mesh.patches_of(H);
-        partial[stripe][G] += effects.of(g, h);
-        partial[stripe][H] += effects.of(h, g);
-      }
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(count);
+  return sum_over_stripes(count, 16, zero, [&](PatchIndex G, Eigen::VectorXd& sum) {
+    const PatchRange g = mesh.patches_of(G);
+    for (PatchIndex H = 0; H < G; ++H) {
+      const PatchRange h = mesh.patches_of(H);
+      sum[G] += effects.of(g, h);
+      sum[H] += effects.of(h, g);
     }
   });
-  for (std::size_t stripe = 1; stripe < parent_stripes; ++stripe) partial[0] += partial[stripe];
-  return partial[0];
+}
+
+Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                        const Observer& observer) {
+  LostShare lost = measure_lost_share(mesh, occluder, options.lost_share_rays, options.seed, observer);
+  AssemblyOptions keeping = options;
+  const bool weighs = weighs_by_errors(lost, mesh.size()) && options.estimator == Estimator::automatic;
+  keeping.keep_errors = options.keep_errors || weighs;
+  return exchange_of(assemble_exchange_areas(mesh, occluder, keeping, observer), mesh, std::move(lost));
+}
+
+Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost) {
+  const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
+  const Eigen::VectorXd area = exposed_area(mesh, lost, seen);
+  return {std::move(raw.exchange_areas), area, seen.cwiseQuotient(area), std::move(lost), raw.counts, raw.error,
+          std::move(raw.entry_errors),   {}};
+}
+
+Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
+                            const Observer& observer) {
+  LostShare lost = measure_lost_share(mesh, occluder, options.lost_share_rays, options.seed, observer);
+  const Eigen::VectorXd area = exposed_area(mesh, lost, Eigen::VectorXd::Zero(mesh.size()));
+  return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, {}, "none: rows on demand"};
+}
+
+// Rows of more entries are known so much better than the lost share that hardly anything is moved, whatever the
+// weights.
+bool weighs_by_errors(const LostShare& lost, PatchIndex patches) { return !lost.closed() && patches <= 4096; }
+
+ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) {
+  const Eigen::Index n = exchange.area.size();
+  if (!exchange.closure.empty() && !exchange.lost.closed()) {
+    return {std::move(exchange.exchange_areas), Eigen::VectorXd::Zero(n), exchange.closure};
+  }
+  if (!exchange.closure.empty()) {
+    const Eigen::VectorXd missing = exchange.area - row_sums(exchange.exchange_areas);
+    // Entries of a closed row are narrowed toward zero (2^-23 of each), stored as the nearest floats F_ij (2^-24) and
+    // narrowed once more when they are read (2^-23).
+    if ((missing.array().abs() <= 5 * 0x1p-24 * exchange.area.array()).all())
+      return {std::move(exchange.exchange_areas), missing, exchange.closure};
+  }
+  const KnownErrors known{exchange.entry_errors, exchange.error};
+  return close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, known, observer);
 }
 
 }  // namespace patchlight

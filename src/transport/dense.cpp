@@ -1,5 +1,3 @@
-#include "transport/dense.h"
-
 #include "patchlight/transport/transport_operator.h"
 
 #include "base/parallel.h"
@@ -18,9 +16,9 @@ namespace patchlight {
 
 // Gathers for one block after the other.
 Sweep RowTransport::sweep(Sweep from, const Relax& there, const Relax& back) const {
-  constexpr PatchIndex block = 64;
   std::vector<PatchRange> ranges;
-  for (PatchIndex begin = 0; begin < size(); begin += block) ranges.push_back({begin, std::min(size(), begin + block)});
+  for (PatchIndex begin = 0; begin < size(); begin += tile_edge)
+    ranges.push_back({begin, std::min(size(), begin + tile_edge)});
 
   Field& B = from.radiosity;
   const auto relax_with = [&](const Relax& relax, PatchRange range) {
@@ -37,13 +35,8 @@ Sweep RowTransport::sweep(Sweep from, const Relax& there, const Relax& back) con
 
 namespace {
 
-// Partial sums of a gather are kept per stripe of neighbouring blocks, a fixed number.
-constexpr PatchIndex gather_stripes = 8;
-
 // The first of `count` blocks that belongs to a stripe.
-PatchIndex first_of(std::size_t stripe, PatchIndex count) {
-  return static_cast<PatchIndex>(stripe * count / gather_stripes);
-}
+PatchIndex first_of(std::size_t stripe, PatchIndex count) { return static_cast<PatchIndex>(stripe * count / stripes); }
 
 class DenseTransport : public RowTransport {
  public:
@@ -64,8 +57,7 @@ class DenseTransport : public RowTransport {
 
  private:
   PatchRange range_of(PatchIndex I) const { return {I * tile_edge, std::min(size(), (I + 1) * tile_edge)}; }
-  Field gather_row(PatchIndex I, const PackedField& b) const;
-  Field push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const;
+  Field gather_row(PatchIndex I, const PackedField& b, PackedField* pushed = nullptr) const;
   Field irradiance_of(PatchIndex I, const Field& sum, const PackedField& b) const;
   void relax_block(PatchIndex I, const Field& irradiance, const Relax& relax, PackedField& b) const;
 
@@ -74,38 +66,22 @@ class DenseTransport : public RowTransport {
   Eigen::VectorXd area_;
 };
 
-// sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones.
-Field DenseTransport::gather_row(PatchIndex I, const PackedField& b) const {
+// sum_j S_ij B_j for the patches i of block I, over the patches j of this block and all later ones. Where `pushed` is
+// given, adds to it what the patches of block I - 1 send to those of the same blocks: the threads meet once per block
+// row.
+Field DenseTransport::gather_row(PatchIndex I, const PackedField& b, PackedField* pushed) const {
   const PatchIndex count = Tiles::blocks(S_) - I;
-  PackedField partial(gather_stripes, b.bands);
-  parallel_for(gather_stripes, [&](std::size_t stripe) {
+  PackedField partial(stripes, b.bands);
+  parallel_for(stripes, [&](std::size_t stripe) {
     RowSums sums(b.bands);
     for (PatchIndex J = I + first_of(stripe, count); J < I + first_of(stripe + 1, count); ++J) {
+      if (pushed != nullptr) push_tile(Tiles::of(S_, I - 1, J).data(), b.bands, b.block(I - 1), pushed->block(J));
       gather_tile(Tiles::of(S_, I, J).data(), b.bands, b.block(J), sums.lanes.data());
     }
     add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
   });
   const PatchRange range = range_of(I);
-  return summed(std::move(partial), gather_stripes).rows(0, range.end - range.begin);
-}
-
-// Adds what the patches of block I send to those of all later blocks, and gathers for the next block: the threads meet
-// once per block row.
-Field DenseTransport::push_and_gather_next(PatchIndex I, const PackedField& b, PackedField& pushed) const {
-  const PatchIndex next = I + 1;
-  const PatchIndex count = Tiles::blocks(S_) - next;
-  PackedField partial(gather_stripes, b.bands);
-  parallel_for(gather_stripes, [&](std::size_t stripe) {
-    RowSums sums(b.bands);
-    for (PatchIndex J = next + first_of(stripe, count); J < next + first_of(stripe + 1, count); ++J) {
-      push_tile(Tiles::of(S_, I, J).data(), b.bands, b.block(I), pushed.block(J));
-      gather_tile(Tiles::of(S_, next, J).data(), b.bands, b.block(J), sums.lanes.data());
-    }
-    add_sums(sums, b.bands, partial.block(static_cast<PatchIndex>(stripe)));
-  });
-  if (next == Tiles::blocks(S_)) return Field(0, b.bands);
-  const PatchRange range = range_of(next);
-  return summed(std::move(partial), gather_stripes).rows(0, range.end - range.begin);
+  return summed(std::move(partial), stripes).rows(0, range.end - range.begin);
 }
 
 // H_i = (sum + d_i B_i) / A_i for the patches of block I.
@@ -138,7 +114,7 @@ Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) c
       irradiance.middleRows(range.begin, rows) = irradiance_of(I, sum, b);
     }
     relax_block(I, irradiance_of(I, pushed.rows(range.begin, rows) + later, b), there, b);
-    later = push_and_gather_next(I, b, pushed);
+    if (I + 1 < Tiles::blocks(S_)) later = gather_row(I + 1, b, &pushed);
   }
   if (!back) return {b.rows(0, size()), std::move(irradiance), pushed.rows(0, size())};
 
@@ -215,9 +191,6 @@ std::unique_ptr<RowTransport> dense_transport(ClosedExchangeAreas exchange_areas
 }
 
 namespace {
-
-// Rows found together, so that clusters are looked at once for several of their patches.
-constexpr PatchIndex rows_at_once = 64;
 
 // Where a patch stands among the clusters.
 struct Place {
@@ -305,11 +278,11 @@ std::vector<std::vector<float>> OnDemandTransport::rows(PatchRange patches) cons
   return S;
 }
 
-// Calls use(i, row of i) in order for these patches.
+// Calls use(i, row of i) in order for these patches. Rows found together look once at a cluster for several patches.
 template <typename Use>
 void OnDemandTransport::for_rows(PatchRange patches, Use use) const {
-  for (PatchIndex begin = patches.begin; begin < patches.end; begin += rows_at_once) {
-    const PatchRange some{begin, std::min(begin + rows_at_once, patches.end)};
+  for (PatchIndex begin = patches.begin; begin < patches.end; begin += tile_edge) {
+    const PatchRange some{begin, std::min(begin + tile_edge, patches.end)};
     const std::vector<std::vector<float>> S = rows(some);
     for (PatchIndex i = some.begin; i < some.end; ++i) use(i, S[i - some.begin]);
   }

@@ -2,8 +2,8 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "form_factor/pair_samples.h"
-#include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "scene/triangulate.h"
@@ -34,13 +34,13 @@ PatchCorners turned(PatchCorners corners) {
 }
 
 bool is_convex_quadrilateral(const std::vector<Point>& points) {
-  if (points.size() != 4) return false;
   const Vector normal = area_vector(points);
-  for (std::size_t k = 0; k < 4; ++k) {
+  bool is_convex = points.size() == 4;
+  for (std::size_t k = 0; is_convex && k < 4; ++k) {
     const Vector edge = points[(k + 1) % 4] - points[k];
-    if (!(edge.cross(points[(k + 2) % 4] - points[(k + 1) % 4]).dot(normal) > 0)) return false;
+    is_convex = edge.cross(points[(k + 2) % 4] - points[(k + 1) % 4]).dot(normal) > 0;
   }
-  return true;
+  return is_convex;
 }
 
 // Counter-clockwise from the side that shines.
@@ -57,12 +57,6 @@ std::vector<PatchCorners> pieces_of(const Scene& scene, const LampSide& lamp) {
     for (PatchCorners& piece : pieces) piece = turned(piece);
   return pieces;
 }
-
-}  // namespace
-
-std::size_t piece_count(const Scene& scene, const LampSide& lamp) { return pieces_of(scene, lamp).size(); }
-
-namespace {
 
 // The pieces of all lamps, one lamp after the other. `keys` of the mesh's patches, patch_keys().
 std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
@@ -84,18 +78,11 @@ std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, co
 
 // Shadow rays of a pair in one half; where it is partly visible four times as many.
 std::uint32_t usual_rays(const LampSampling& sampling) {
-  constexpr std::uint32_t packet = ShadowPacket::size;
+  const std::uint32_t packet = ShadowPacket::size;
   return packet * std::bit_ceil(std::max(static_cast<std::uint32_t>(sampling.rays) / (4 * packet), 1U));
 }
 
-// A patch farther from a lamp than so many of its diameters is taken at its centroid, and at three or four points
-// beyond the second number: the form factor of a point varies with the square of diameter over distance.
-constexpr double point_diameters = 8;
-constexpr double points_diameters = 2;
-
-constexpr std::size_t sampled_at_once = 256;
-
-// What the shadow rays of one half of a pair have met.
+// The result of the shadow rays of one half of a pair.
 struct LampRays {
   float weight = 0;       // summed geometry terms, 1/m^2
   float seen_weight = 0;  // each times what its ray lets through
@@ -107,8 +94,8 @@ struct LampRays {
   bool is_partial() const { return seen > 0 && seen != static_cast<float>(weighted); }
 };
 
-// Errors pooled over pairs by their visible share: none, seven parts between, all, and more than that, as clear faces
-// have at an angle.
+// Errors pooled over pairs by their visible share: none, seven parts between, all, and more, as clear faces have at an
+// angle.
 struct Pool {
   static constexpr std::size_t bins = 10;
   std::array<double, bins> squares{};  // summed variances of the mean of both halves
@@ -152,11 +139,12 @@ struct LampSampler {
 };
 
 double LampSampler::unoccluded(const PatchShape& patch, const LampPiece& piece) const {
+  // The form factor of a point varies with the square of diameter over distance: a patch 8 diameters away from a piece
+  // is taken at its centroid, and one 2 diameters away at three or four points.
   const double distance = (piece.shape.centroid - patch.centroid).norm() - piece.shape.radius;
-  if (distance < 2 * points_diameters * patch.radius)
-    return unoccluded_exchange_area(patch, piece.shape, FarRule::fine) / patch.area;
-  if (distance > 2 * point_diameters * patch.radius)
-    return point_to_polygon(patch.centroid, patch.normal, piece.shape.corners);
+  const double diameter = 2 * patch.radius;
+  if (distance < 2 * diameter) return unoccluded_exchange_area(patch, piece.shape, FarRule::fine) / patch.area;
+  if (distance > 8 * diameter) return point_to_polygon(patch.centroid, patch.normal, piece.shape.corners);
   double sum = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(patch.coarse.count); ++k) {
     const Point at(patch.coarse.x[k], patch.coarse.y[k], patch.coarse.z[k]);
@@ -207,7 +195,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
     pair.bin = {Pool::bins - 1, Pool::bins - 1};
     return pair;
   }
-  // 1. The usual rays of both halves; more by what the other half has met.
+  // 1. The usual rays of both halves; more where those of the other half disagree.
   std::array<SampleSet, 2> sets;
   std::array<LampRays, 2> rays;
   for (std::uint32_t half = 0; half < 2; ++half) {
@@ -221,7 +209,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
 
   // 2. The form factor without occluders is not worth its time where nothing is seen.
   if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
-  // Clear ones may hold all of what comes at an angle.
+  // Clear ones may hold all light at an angle.
   const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i], mesh.side[i]));
   for (std::size_t half = 0; half < 2; ++half) {
     pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area, most);
@@ -230,7 +218,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   return pair;
 }
 
-// What is known of each patch (row) and piece (column) until the pool is.
+// The values of each patch (row) and piece (column) until the pool is known.
 struct PieceValues {
   template <typename Value>
   using Table = Eigen::Array<Value, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -280,6 +268,8 @@ LampValues standard_errors(const LampSampler& sampler, const PieceValues& values
 
 }  // namespace
 
+std::size_t piece_count(const Scene& scene, const LampSide& lamp) { return pieces_of(scene, lamp).size(); }
+
 LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
                          std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
@@ -289,7 +279,7 @@ LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occlud
                             lamp_pieces(scene, mesh, occluder, lamps, keys),
                             keys,
                             usual,
-                            SampleTable(4 * usual, hash({sampling.seed, 3})),
+                            SampleTable(4 * usual, hash({sampling.seed, stream::points_on_lamps})),
                             occluder.can_occlude(),
                             occluder.frame().scale};
   const auto rows = static_cast<Eigen::Index>(mesh.size());
@@ -302,14 +292,15 @@ LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occlud
   for (auto& bin : values.bin) bin.resize(rows, pieces);
 
   // 1. Both halves of every pair.
-  std::vector<LampTask> tasks((mesh.size() + sampled_at_once - 1) / sampled_at_once);
+  constexpr PatchIndex at_once = 256;
+  std::vector<LampTask> tasks((mesh.size() + at_once - 1) / at_once);
   parallel_for(tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
-    const std::size_t end = std::min((t + 1) * sampled_at_once, static_cast<std::size_t>(mesh.size()));
-    for (std::size_t i = t * sampled_at_once; i < end; ++i)
-      sample_patch(sampler, static_cast<PatchIndex>(i), factors, values, tasks[t]);
+    const auto begin = static_cast<PatchIndex>(t * at_once);
+    for (PatchIndex i = begin; i < std::min(begin + at_once, mesh.size()); ++i)
+      sample_patch(sampler, i, factors, values, tasks[t]);
   });
 
-  // 2. What their differences tell.
+  // 2. The errors that their differences show.
   Pool pool;
   for (const LampTask& task : tasks) {
     factors.shadow_rays += task.shadow_rays;

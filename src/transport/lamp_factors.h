@@ -45,8 +45,8 @@ struct LampSampling {
 
 /// Each patch with each piece of a lamp: the closed form without occluders where all rays are free, and 0 where none
 /// is; else by formula (5) of docs/theory/occluded-form-factors.md. Each half takes a quarter of `rays` for a pair, 16
-/// at least, and four times as many where those of the **other** half disagree: how many it takes does not depend on
-/// what its own meet, so that it is unbiased. Standard errors are pooled over pairs with the same visible share. The
+/// at least, and four times as many where those of the **other** half disagree: the number does not depend on
+/// its own rays, so that it is unbiased. Standard errors are pooled over pairs with the same visible share. The
 /// same bits for any number of threads. \throws Cancelled.
 LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
                          std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer = {});

@@ -2,8 +2,11 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 
@@ -18,18 +21,11 @@
 namespace patchlight {
 namespace {
 
-// When it has to be decided whether a point is covered, so many rays start there over the hemisphere, and as many
-// around the horizon with this slope: under a face that hangs close over the patch they get out, inside a solid they do
-// not.
+// To find out whether a point is covered, so many rays start there over the hemisphere, and as many around the horizon.
 constexpr int rays_per_point = 8;
-constexpr double grazing_slope = 1e-3;
 
 struct Shares {
-  double escaped = 0;
-  double at_backs = 0;
-  double covered = 0;
-  double dark = 0;
-  double overlaid = 0;
+  double escaped, at_backs, covered, dark, overlaid;
 };
 
 struct HemisphereSampler {
@@ -47,18 +43,18 @@ struct HemisphereSampler {
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
-// What rays meet, the first polygons where specular ones are as others.
+// The ends of rays, at the first polygons where specular ones are as others.
 std::vector<Seen> HemisphereSampler::look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   if (!ends_at_specular) return sights.of_rays(patch, rays, seed);
   std::vector<Seen> seen;
-  for (const SeenWay& one : sights.along_ways(patch, rays, seed)) {
-    if (one.way.empty()) {
-      seen.push_back({one.end, {}});
+  for (const auto& [way, end] : sights.along_ways(patch, rays, seed)) {
+    if (way.empty()) {
+      seen.push_back({{}, end});
       continue;
     }
-    const Hit& first = one.way.front().hit;
+    const Hit& first = way.front().hit;
     const Sight there = sights.has_patches(first) ? Sight::patch : Sight::back;
-    seen.push_back({one.way.size() == 1 && one.way[0].onward == Onward::ends ? one.end : there, first});
+    seen.push_back({first, way.size() == 1 && !has_left(way) ? end : there});
   }
   return seen;
 }
@@ -82,12 +78,13 @@ std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups
   return rays;
 }
 
-// For each group of rays as many from its starting point, evenly around the horizon.
+// For each group of rays as many from its starting point, evenly around the horizon: under a face that hangs close over
+// the patch these get out, inside a solid they do not.
 std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vector<Ray> groups) {
   const Eigen::Matrix3d frame = patch_frame(mesh, patch);
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const double azimuth = 2 * std::numbers::pi * static_cast<double>(k % rays_per_point) / rays_per_point;
-    groups[k].direction = (frame * Vector(std::cos(azimuth), std::sin(azimuth), grazing_slope)).normalized();
+    groups[k].direction = (frame * Vector(std::cos(azimuth), std::sin(azimuth), 1e-3)).normalized();
   }
   return groups;
 }
@@ -101,22 +98,17 @@ std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::
     const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == 0) continue;
     for (Seen& one : group) {
-      if (one.sight == Sight::patch && sights.is_in_contact(*one.hit)) one.sight = Sight::back;
+      if (one.sight == Sight::patch && sights.is_in_contact(*one.met)) one.sight = Sight::back;
     }
   }
   return seen;
 }
 
-// What groups of rays from one point each tell. A point is covered when every ray from it meets a back, a face that
+// The shares by groups of rays from one point each. A point is covered when every ray from it meets a back, a face that
 // lies against the patch, or one against which another lies.
 Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   const std::vector<Seen> seen = look_together(patch, rays, seed);
-  int covered = 0;
-  int exposed = 0;
-  int escaped = 0;
-  int at_backs = 0;
-  int dark = 0;
-  int overlaid = 0;
+  int covered = 0, exposed = 0, escaped = 0, at_backs = 0, dark = 0, overlaid = 0;
   for (std::size_t first = 0; first < seen.size(); first += rays_per_point) {
     const auto group = std::span(seen).subspan(first, rays_per_point);
     if (unseen(group) == rays_per_point) {
@@ -199,7 +191,7 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
     const auto i = static_cast<PatchIndex>(k);
     const PatchIndex b = known.place[i];
     const int rays = before.rays_per_patch << (known.doublings.empty() ? 0 : known.doublings[i]);
-    const Shares shares = b == no_patch ? sampler.measure(i, rays, hash({seed, keys[i], 1}))
+    const Shares shares = b == no_patch ? sampler.measure(i, rays, hash({seed, keys[i], stream::lost_rays}))
                                         : Shares{before.escaped[b], before.at_backs[b], before.covered[b],
                                                  before.dark[b], before.overlaid[b]};
     lost.escaped[i] = shares.escaped;
@@ -213,12 +205,11 @@ LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, co
 }
 
 Eigen::VectorXd exposed_area(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& seen) {
-  constexpr double smallest_share = 1e-6;
   Eigen::ArrayXd area = Eigen::Map<const Eigen::ArrayXd>(mesh.area.data(), mesh.size());
   if (lost.clear.size() > 0) area *= 1 - lost.clear.array();
   const Eigen::ArrayXd measured = area * (1 - lost.covered.array());
   const Eigen::ArrayXd shown = (lost.covered.array() > 0).select(seen.array(), 0.0);
-  return measured.max(shown.min(area)).max(smallest_share * area);
+  return measured.max(shown.min(area)).max(1e-6 * area);
 }
 
 }  // namespace patchlight

@@ -4,8 +4,8 @@
 
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/tolerances.h"
 #include "form_factor/pair_samples.h"
-#include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "transport/tiles.h"
@@ -23,9 +23,7 @@ namespace patchlight {
 namespace {
 
 constexpr std::size_t rays_per_pair = 4;
-constexpr std::size_t pairs_per_packet = ShadowPacket::size / rays_per_pair;
 constexpr std::size_t packets_per_task = 64;
-constexpr std::size_t most_packets = 16384;
 
 // Packets as those of an assembly with few samples: pairs of one patch with patches that follow each other.
 struct PacketMaker {
@@ -45,7 +43,7 @@ struct PacketMaker {
     }
     PairSamples samples;
     const SampledPatch from = sampled_patch(shapes[i], mesh.polygon[i], frame);
-    for (std::size_t n = 0; n < pairs_per_packet; ++n) {
+    for (std::size_t n = 0; n < ShadowPacket::size / rays_per_pair; ++n) {
       const auto second = static_cast<PatchIndex>((j + n) % mesh.size());
       const SampledPatch to = sampled_patch(shapes[second], mesh.polygon[second], frame);
       add_samples(samples, static_cast<int>(n * rays_per_pair), static_cast<int>(rays_per_pair), from, to,
@@ -58,8 +56,7 @@ struct PacketMaker {
 }  // namespace
 
 double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t rays) {
-  const std::size_t packets = std::min<std::size_t>(rays / ShadowPacket::size, most_packets);
-  const std::size_t tasks = packets / packets_per_task;
+  const std::size_t tasks = std::min<std::uint64_t>(rays, 262144) / ShadowPacket::size / packets_per_task;
   if (tasks == 0 || mesh.size() < 2) return 0;
   const PacketMaker maker{.mesh = mesh, .frame = occluder.frame()};
   std::vector<ShadowPacket> made(tasks * packets_per_task);
@@ -77,8 +74,6 @@ double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint6
 }
 
 namespace {
-
-constexpr std::size_t packet = ShadowPacket::size;
 
 // A packet is filled by pairs that take 2, 4, 8 or 16 of its rays each.
 std::uint32_t even(int count) { return (static_cast<std::uint32_t>(std::max(count, 1)) + 1) / 2 * 2; }
@@ -121,6 +116,12 @@ std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vect
 
 }  // namespace
 
+PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at) {
+  const Point x = square_to_quad(smaller.corners.points, at[0], at[1]);
+  const Point y = square_to_quad(larger.corners.points, at[2], at[3]);
+  return {x, y, smaller.area * larger.area * geometry_term(x, smaller.normal, y, larger.normal), 0};
+}
+
 double Pair::visible_share() const {
   const bool idle = weighted_rays == 0;
   return static_cast<double>(idle ? idle_seen : seen) / std::max(1U, idle ? idle_rays : weighted_rays);
@@ -150,7 +151,7 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
   const bool adjacent = is_adjacent(shapes_[i], shapes_[j]);
   const double first = shapes_[i].area;
   const double second = shapes_[j].area;
-  const bool sizes_differ = std::abs(first - second) > 1e-9 * (first + second);
+  const bool sizes_differ = std::abs(first - second) > tolerance_of_shapes * (first + second);
   if (adjacent && sizes_differ ? second < first : keys_[j] < keys_[i]) std::swap(i, j);
   return {.first = i,
           .second = j,
@@ -159,16 +160,14 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
           .is_adjacent = adjacent};
 }
 
-// Traces samples [begin, end) of every pair and adds up their weights. A packet holds 2, 4, 8 or 16 rays of each of its
-// pairs, so that its rays are coherent.
+// Traces samples [begin, end) of every pair. A packet holds 2, 4, 8 or 16 rays of each of its pairs, so that its rays
+// are coherent.
 void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   PairSamples next;
   for (std::uint32_t k = begin; k < end;) {
-    const std::size_t step = k % 16 == 0 && end - k >= 16 ? 16
-                             : k % 8 == 0 && end - k >= 8 ? 8
-                             : k % 4 == 0 && end - k >= 4 ? 4
-                                                          : 2;
-    const std::size_t at_once = packet / step;
+    std::uint32_t step = 16;
+    while (step > 2 && (k % step != 0 || end - k < step)) step /= 2;
+    const std::size_t at_once = ShadowPacket::size / step;
     for (std::size_t p = 0; p < pairs.size(); p += at_once) {
       for (std::size_t n = 0; n < at_once; ++n) {
         // Lanes beyond the last pair repeat it.
@@ -176,20 +175,19 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
         add_samples(next, static_cast<int>(n * step), static_cast<int>(step), patches_[pair.first],
                     patches_[pair.second], pair.set, k, scale_);
       }
-      const std::array<float, packet> arriving = occluder_.transmittance(next.rays);
-      for (std::size_t lane = 0; lane < packet && p + lane / step < pairs.size(); ++lane) {
+      const auto arriving = occluder_.transmittance(next.rays);
+      for (std::size_t lane = 0; lane < ShadowPacket::size && p + lane / step < pairs.size(); ++lane) {
         add(pairs[p + lane / step], next.weight[lane], arriving[lane]);
       }
     }
-    k += static_cast<std::uint32_t>(step);
+    k += step;
   }
 }
 
 // The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
 void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   const std::size_t count = end - begin;
-  constexpr std::size_t most_segments = 4096;
-  if (pairs.size() > 1 && pairs.size() * count > most_segments) {
+  if (pairs.size() > 1 && pairs.size() * count > rays_at_once) {
     trace_adjacent(pairs.first(pairs.size() / 2), begin, end);
     return trace_adjacent(pairs.subspan(pairs.size() / 2), begin, end);
   }
@@ -222,8 +220,8 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
   trace_packets(pairs, begin, end);
 }
 
-// By the form factor from the smaller patch, or what the weights of the first samples tell of it.
-// Where not one of them has a weight, as the patches see each other in a sliver, it takes the most to find it.
+// By the form factor from the smaller patch, or its estimate by the weights of the first samples. Where not one of them
+// has a weight, as the patches see each other in a sliver, it takes the most to find it.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
   if (pair.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
@@ -245,7 +243,7 @@ std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
   for_groups({pairs.begin(), usual},
              [&](std::span<Pair> group) { trace(group, samples_, group.front().effort * samples_); });
 
-  // 3. What is not worth computing for pairs that see nothing of each other.
+  // 3. The exact value is not worth computing for pairs that see nothing of each other.
   for (Pair& pair : pairs) {
     if (pair.unoccluded < 0 && pair.visible_share() > 0) pair.unoccluded = exact(pair.first, pair.second);
   }
@@ -277,7 +275,7 @@ double PairSampler::exchange_area(const Pair& pair) const {
   const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
   const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
-  // Clear patches may hold all of what comes at an angle.
+  // Clear patches may hold all light at an angle.
   return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / held_by_both);
 }
 
@@ -291,7 +289,7 @@ std::vector<Point> box_around(std::span<const Point> points, const Vector& axis,
   axes.col(1) = axis.cross(axes.col(0));
   Box box;
   for (const Point& point : points) box.extend(axes.transpose() * (point - origin));
-  const bool is_flat = box.sizes().z() < 1e-9 * box.sizes().norm();
+  const bool is_flat = box.sizes().z() < tolerance_of_shapes * box.sizes().norm();
   std::vector<Point> corners;
   for (int k = 0; k < (is_flat ? 4 : 8); ++k) {
     corners.push_back(origin + axes * box.corner(static_cast<Box::CornerType>(k)));
@@ -299,32 +297,18 @@ std::vector<Point> box_around(std::span<const Point> points, const Vector& axis,
   return corners;
 }
 
-bool is_covered(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
-  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
-                     [&](PatchIndex i) { return occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]); });
-}
-
-bool is_clear(const PatchMesh& mesh, const PatchCluster& cluster, const Occluder& occluder) {
-  return std::any_of(cluster.patches.begin(), cluster.patches.begin() + cluster.size,
-                     [&](PatchIndex i) { return occluder.held_share(mesh.polygon[i], mesh.side[i]) < 1; });
-}
-
-std::vector<PolygonIndex> polygons_of(const PatchMesh& mesh, const PatchCluster& cluster) {
-  std::vector<PolygonIndex> polygons;
-  for (int lane = 0; lane < cluster.size; ++lane)
-    polygons.push_back(mesh.polygon[cluster.patches[static_cast<std::size_t>(lane)]]);
-  std::sort(polygons.begin(), polygons.end());
-  polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
-  return polygons;
-}
-
-ClusterHull hull_of(const PatchCluster& cluster, const std::vector<PatchShape>& shapes, const ShaftCuller& culler) {
+ClusterHull hull_of(const PatchCluster& cluster, const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
+                    const Occluder& occluder) {
   std::vector<Point> corners;
-  for (int lane = 0; lane < cluster.size; ++lane) {
-    const std::span<const Point> patch = shapes[cluster.patches[static_cast<std::size_t>(lane)]].corners;
+  ClusterHull hull;
+  for (const PatchIndex i : std::span(cluster.patches).first(static_cast<std::size_t>(cluster.size))) {
+    const std::span<const Point> patch = shapes[i].corners;
     corners.insert(corners.end(), patch.begin(), patch.end());
+    hull.is_covered |= occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]);
+    hull.is_clear |= occluder.held_share(mesh.polygon[i], mesh.side[i]) < 1;
+    hull.polygons.push_back(mesh.polygon[i]);
   }
-  ClusterHull hull{culler.slabs(corners), {}, {}, false, false, {}};
+  hull.slabs = occluder.shafts().slabs(corners);
   const PatchShape& first = shapes[cluster.patches[0]];
   const Vector& normal = first.normal;
   if (cluster.is_planar) {
@@ -346,12 +330,7 @@ ClusterPairs::ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, cons
       shapes_(patch_shapes(mesh)),
       clusters_(patch_clusters(mesh, shapes_)),
       sampler_(mesh, shapes_, occluder, options) {
-  for (const PatchCluster& cluster : clusters_) {
-    hulls_.push_back(hull_of(cluster, shapes_, occluder.shafts()));
-    hulls_.back().is_covered = is_covered(mesh, cluster, occluder);
-    hulls_.back().is_clear = is_clear(mesh, cluster, occluder);
-    hulls_.back().polygons = polygons_of(mesh, cluster);
-  }
+  for (const PatchCluster& cluster : clusters_) hulls_.push_back(hull_of(cluster, mesh, shapes_, occluder));
 }
 
 PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
@@ -366,7 +345,7 @@ PairClass ClusterPairs::class_of(const ClusterPair& pair) const {
 }
 
 bool ClusterPairs::is_free(const ClusterHull& a, const ClusterHull& b) const {
-  // What a clear polygon holds back depends on the angle, which no closed form knows.
+  // The share that a clear polygon holds back depends on the angle, which no closed form knows.
   if (a.is_covered || b.is_covered || a.is_clear || b.is_clear) return false;
   return !occluder_.can_occlude() || occluder_.shafts().is_empty(a.slabs, b.slabs, a.behind, b.behind);
 }

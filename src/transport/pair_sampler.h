@@ -9,6 +9,7 @@
 #include "visibility/occluder.h"
 #include "visibility/shaft.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -19,11 +20,25 @@
 namespace patchlight {
 
 /// Shadow rays per second that the occluder traces when nothing else is done: at most `rays` of them, and at most
-/// 262,144, between random patches that face each other, four to a pair, on all threads. What an assembly reaches of
-/// this is its efficiency. 0 when `rays` are too few to tell. Differs from run to run.
+/// 262,144, between random patches that face each other, four to a pair, on all threads. 0 when `rays` are too few to
+/// tell. Differs from run to run.
 double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t rays);
 
-/// A pair of patches that face each other, and what its shadow rays have met so far.
+/// Rays that are traced at once.
+inline constexpr std::size_t rays_at_once = 4096;
+
+/// A shadow ray between two patches.
+struct PairSample {
+  Point from;             ///< on the smaller patch
+  Point to;               ///< on the larger
+  double weight = 0;      ///< the mean of the weights of the free rays is the exchange area, m^2
+  double unoccluded = 0;  ///< an estimate of the exchange area without occluders, m^2; 0 if it is not used
+};
+
+/// A sample with uniformly distributed points on both patches: weight A_i A_j G.
+PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at);
+
+/// A pair of patches that face each other, and the result of its shadow rays so far.
 struct Pair {
   PatchIndex first = 0;  ///< rays are sampled from here
   PatchIndex second = 0;
@@ -52,18 +67,17 @@ class PairSampler {
   /// `unoccluded` is -1 where it takes exact() to find it, which happens when a ray is free.
   Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
 
-  /// The share of the light between two patches that counts as exchanged: of what arrives at a clear one, that it
-  /// holds back.
+  /// The share of the light between two patches that counts as exchanged: the part that clear ones hold back.
   float held(PatchIndex i, PatchIndex j) const { return held_[i] * held_[j]; }
 
   /// The exchange area without occluders, by closed form or quadrature in double precision, times held().
   float exact(PatchIndex i, PatchIndex j) const;
 
-  /// Traces as many rays for every pair as its form factor calls for, whatever they meet: were it to depend on what the
-  /// first of them meet, the estimate would be biased. The pairs come out in another order.
+  /// Traces as many rays for every pair as its form factor calls for, whatever the first of them meet: so the estimate
+  /// has no bias. The pairs come out in another order.
   std::vector<Pair> sampled(std::vector<Pair> pairs) const;
 
-  /// All samples of one pair anew, independent of those before.
+  /// All samples of one pair once more, independent of those before.
   Pair sampled_again(const Pair& pair) const;
 
   /// The estimate from the pair's rays, m^2: docs/theory/occluded-form-factors.md, formula (5).
@@ -87,7 +101,7 @@ class PairSampler {
   SampleTable table_;
 };
 
-/// What decides on the shafts of a cluster.
+/// The data of a cluster that decide on its shafts.
 struct ClusterHull {
   Slabs slabs;
   std::optional<HalfSpace> behind;     ///< of a planar cluster
@@ -107,7 +121,7 @@ struct ClusterPair {
   std::size_t column = 0;
 };
 
-/// What decides on the exchange areas between two clusters.
+/// How the exchange areas between two clusters are found.
 enum class PairClass {
   averted,  ///< all are 0, as one cluster lies behind the other
   hidden,   ///< all are 0, as one polygon stands between them

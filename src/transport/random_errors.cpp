@@ -1,7 +1,8 @@
 #include "transport/random_errors.h"
 
-#include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
+#include "transport/tiles.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,9 +11,6 @@
 
 namespace patchlight {
 namespace {
-
-// Partial sums are kept per stripe of rows; their number is fixed, so that the bits do not depend on the threads.
-constexpr PatchIndex row_stripes = 8;
 
 // S_ij without occluders, from centroid to centroid.
 double unoccluded(const PatchMesh& mesh, const Eigen::VectorXd& area, PatchIndex i, PatchIndex j) {
@@ -55,7 +53,7 @@ double Drawer::of_unanimous(const SamplingError::Unanimous& unanimous, PatchInde
   return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(area[i], area[j])));
 }
 
-// Adds what the entries of row j and the columns before it contribute.
+// Adds the part of the entries of row j and the columns before it.
 void Drawer::add_row(PatchIndex j, const FieldView& x, Field& sum) const {
   const Eigen::Index columns = x.cols();
   const Eigen::Index draws = sum.cols() / columns;
@@ -83,19 +81,8 @@ void Drawer::add_variances(PatchIndex j, const FieldView& x, Field& sum) const {
   }
 }
 
-// What add(j, sum) adds for all rows j, in `columns` columns.
-template <typename Add>
-Field sum_over_rows(std::size_t size, Eigen::Index columns, Add add) {
-  std::vector<Field> partial(row_stripes, Field::Zero(static_cast<Eigen::Index>(size), columns));
-  parallel_for(row_stripes, [&](std::size_t stripe) {
-    for (auto j = static_cast<PatchIndex>(stripe); j < size; j += row_stripes) add(j, partial[stripe]);
-  });
-  for (std::size_t stripe = 1; stripe < row_stripes; ++stripe) partial[0] += partial[stripe];
-  return partial[0];
-}
-
 Drawer drawer_of(const ErrorsOfEntries& of, std::uint64_t seed) {
-  return {of.mesh, of.area, of.errors, of.sampling, hash({seed, 0x64726177})};
+  return {of.mesh, of.area, of.errors, of.sampling, hash({seed, stream::signs_of_rows})};
 }
 
 }  // namespace
@@ -103,14 +90,17 @@ Drawer drawer_of(const ErrorsOfEntries& of, std::uint64_t seed) {
 Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed) {
   assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()) && draws >= 1 && draws <= 32);
   const Drawer drawer = drawer_of(of, seed);
-  return sum_over_rows(of.errors.size(), x.cols() * draws,
-                       [&](PatchIndex j, Field& sum) { drawer.add_row(j, x, sum); });
+  const Field zero = Field::Zero(x.rows(), x.cols() * draws);
+  return sum_over_stripes(of.errors.size(), stripes, zero,
+                          [&](PatchIndex j, Field& sum) { drawer.add_row(j, x, sum); });
 }
 
 Field by_variances(const ErrorsOfEntries& of, const FieldView& x) {
   assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()));
   const Drawer drawer = drawer_of(of, 0);
-  return sum_over_rows(of.errors.size(), x.cols(), [&](PatchIndex j, Field& sum) { drawer.add_variances(j, x, sum); });
+  const Field zero = Field::Zero(x.rows(), x.cols());
+  return sum_over_stripes(of.errors.size(), stripes, zero,
+                          [&](PatchIndex j, Field& sum) { drawer.add_variances(j, x, sum); });
 }
 
 }  // namespace patchlight

@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-/// What is known of the errors of a mesh's exchange areas.
+/// The known errors of a mesh's exchange areas.
 struct ErrorsOfEntries {
   const PatchMesh& mesh;
   const Eigen::VectorXd& area;  ///< m^2, exposed
@@ -17,7 +17,7 @@ struct ErrorsOfEntries {
   const SamplingError& sampling;
 };
 
-/// What sampling errors do to a product with the exchange areas: D X for each of `draws` random symmetric matrices
+/// The errors by sampling of a product with the exchange areas: D X for each of `draws` random symmetric matrices
 /// D_ij = +-sigma_ij with independent signs. sigma is the standard error of an estimated entry; of one whose rays
 /// agreed, the pooled one of such entries, as a share of the unoccluded exchange area between the patches' centroids.
 /// Columns: those of x for the first draw, then for the second, ...; m^2 times the unit of x. O(size^2). The same bits

@@ -22,7 +22,7 @@ double mirrored_rays(const SpecularFaces& faces, const SpecularStop& stop) {
   return face ? face->mirrored_rays(stop.side(), stop.cosine()) : 1;
 }
 
-// What is left of the light after a stop, over the probability that the ray went this way.
+// The share of light left after a stop, over the probability that the ray went this way.
 double onward_share(const SpecularShares& shares, const SpecularFaces& faces, const SpecularStop& stop) {
   if (stop.step() == RayStep::crossed) return shares.transmitted;
   if (stop.step() == RayStep::sent) return shares.relative_held;
@@ -102,10 +102,6 @@ constexpr std::size_t tasks_of_a_block = RowBlocks::patches_of_a_block / patches
 struct PatchSpan {
   std::size_t begin, end;
 };
-PatchSpan patches_of(std::size_t block, std::size_t patches) {
-  constexpr std::size_t size = RowBlocks::patches_of_a_block;
-  return {block * size, std::min((block + 1) * size, patches)};
-}
 
 // A form factor of one ray, with room for rounding. False for numbers that are not finite.
 bool is_form_factor(float value) { return value >= 0 && value <= 1.001F; }
@@ -144,7 +140,8 @@ bool show_stops(RawHalf& rows, std::vector<SpecularStop>& stops, const PatchSpan
 template <class Show>
 bool show_block(RawRows& raw, std::size_t block, const Show& show) {
   const std::size_t patches = raw.escaped.size();
-  const auto [begin, end] = patches_of(block, patches);
+  const std::size_t begin = block * RowBlocks::patches_of_a_block;
+  const std::size_t end = std::min(begin + RowBlocks::patches_of_a_block, patches);
   RowEntries& first = raw.tasks[block * tasks_of_a_block];
   for (std::size_t i = begin; i < end; ++i) {
     show(raw.escaped[i]), show(raw.sees_backs[i]), show(raw.distance[i]);
@@ -201,18 +198,20 @@ struct Reader {
   bool has_room_for(std::size_t numbers) const { return at + numbers <= words.size(); }
 };
 
+// Moves all values to the end of others.
+void append(auto& into, auto& values) {
+  into.insert(into.end(), values.begin(), values.end());
+  values = {};
+}
+
 // Moves the entries of a block into its first task.
 void gather_entries(RawRows& raw, std::size_t block) {
   const std::size_t first = block * tasks_of_a_block;
   RowEntries& into = raw.tasks[first];
   for (std::size_t t = first + 1; t < std::min(first + tasks_of_a_block, raw.tasks.size()); ++t) {
     for (std::size_t half = 0; half < 2; ++half) {
-      std::vector<RayEntry>& more = raw.tasks[t].halves[half];
-      into.halves[half].insert(into.halves[half].end(), more.begin(), more.end());
-      more = {};
-      std::vector<SpecularStop>& more_stops = raw.tasks[t].stops[half];
-      into.stops[half].insert(into.stops[half].end(), more_stops.begin(), more_stops.end());
-      more_stops = {};
+      append(into.halves[half], raw.tasks[t].halves[half]);
+      append(into.stops[half], raw.tasks[t].stops[half]);
     }
     into.shadow_rays += std::exchange(raw.tasks[t].shadow_rays, 0);
   }
@@ -252,10 +251,9 @@ RawRows traced(const RowTracer& tracer, const RowBlocks* blocks, const Observer&
   return raw;
 }
 
-// What the rays of each patch have found to be open; of backs nothing.
+// The shares of the rays of each patch that escape; backs are not among them.
 LostShare escaped_shares(const RawRows& raw, const std::vector<std::uint32_t>& counts) {
-  const auto size = static_cast<Eigen::Index>(counts.size());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(counts.size()));
   LostShare lost{zero, zero, zero, 0, zero, {}, zero};
   for (std::size_t i = 0; i < counts.size(); ++i)
     lost.escaped[static_cast<Eigen::Index>(i)] = raw.escaped[i] / (2.0 * counts[i]);
@@ -267,10 +265,7 @@ void put_stops_together(RawRows& raw, std::size_t half, RayRows& rows) {
   for (const std::uint32_t count : raw.halves[half].stop_count)
     rows.first_stop.push_back(rows.first_stop.back() + count);
   rows.stops.reserve(rows.first_stop.back());
-  for (RowEntries& task : raw.tasks) {
-    rows.stops.insert(rows.stops.end(), task.stops[half].begin(), task.stops[half].end());
-    task.stops[half] = {};
-  }
+  for (RowEntries& task : raw.tasks) append(rows.stops, task.stops[half]);
 }
 
 // Row by row without gaps; raw entries are let go.
@@ -290,10 +285,7 @@ RayRows put_together(RawRows& raw, std::size_t half, const std::vector<std::uint
   from.hits.resize(rows.first_hit.back());
   rows.hits = std::move(from.hits);
   rows.entries.reserve(rows.first_entry.back());
-  for (RowEntries& task : raw.tasks) {
-    rows.entries.insert(rows.entries.end(), task.halves[half].begin(), task.halves[half].end());
-    task.halves[half] = {};
-  }
+  for (RowEntries& task : raw.tasks) append(rows.entries, task.halves[half]);
   if (!from.stop_count.empty()) put_stops_together(raw, half, rows);
   return rows;
 }
@@ -305,7 +297,7 @@ struct MeasureBy {
   const Observer& observer;
 };
 
-// Of clear patches all rays are told by stops; what these let through is of their colour.
+// All rays of clear patches have stops; the light that these let through has their color.
 LostShare without_clear(LostShare lost, const PatchMesh& mesh, const Occluder& occluder) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const SpecularFace* const face = occluder.specular_faces().at(mesh.polygon[i]);
@@ -328,8 +320,7 @@ LostShare with_backs(LostShare lost, const std::vector<std::uint32_t>& sees_back
 }  // namespace
 
 void SpecularStop::set(RayStep step, Side on, double of_angle) {
-  constexpr double most = 0x1p28 - 1;
-  const double steps = std::clamp(of_angle * 0x1p28, 0.0, most);
+  const double steps = std::clamp(of_angle * 0x1p28, 0.0, 0x1p28 - 1);
   bits =
       static_cast<std::uint32_t>(step) | static_cast<std::uint32_t>(on) << 3U | static_cast<std::uint32_t>(steps) << 4U;
 }
@@ -373,7 +364,7 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
 
 namespace {
 
-// What rays that are specular on their way tell of one row for one colour.
+// One row for one color, by rays that are specular on their way.
 struct WeighedRow {
   std::vector<RayEntry> entries;
   double open = 0;      // form factors to the open
@@ -382,9 +373,7 @@ struct WeighedRow {
 
 WeighedRow weighed_row(const RayRows& rows, std::size_t i, const SpecularFaces& faces) {
   WeighedRow row;
-  const std::span<const SpecularStop> stops(rows.stops.data() + rows.first_stop[i],
-                                            rows.first_stop[i + 1] - rows.first_stop[i]);
-  tell_form_factors(stops, faces, [&row](const SpecularStop& stop, double form_factor) {
+  tell_form_factors(rows.stops_of(i), faces, [&row](const SpecularStop& stop, double form_factor) {
     if (stop.patch == SpecularStop::in_the_open) {
       row.open += form_factor;
     } else if (stop.patch == SpecularStop::at_back) {
@@ -396,12 +385,6 @@ WeighedRow weighed_row(const RayRows& rows, std::size_t i, const SpecularFaces& 
   return row;
 }
 
-std::vector<WeighedRow> weighed_half(const RayRows& rows, const SpecularFaces& faces) {
-  std::vector<WeighedRow> weighed(rows.hit_weight.size());
-  parallel_for(weighed.size(), [&](std::size_t i) { weighed[i] = weighed_row(rows, i, faces); });
-  return weighed;
-}
-
 // The entries of plain rays, and after them those of the others, row by row; the stops are let go.
 RayRows with_entries(RayRows rows, const std::vector<WeighedRow>& weighed) {
   LargeArray<RayEntry> all;
@@ -410,9 +393,8 @@ RayRows with_entries(RayRows rows, const std::vector<WeighedRow>& weighed) {
   all.reserve(count);
   std::vector<std::uint64_t> first{0};
   for (std::size_t i = 0; i < weighed.size(); ++i) {
-    const auto begin = rows.entries.begin();
-    all.insert(all.end(), begin + static_cast<std::ptrdiff_t>(rows.first_entry[i]),
-               begin + static_cast<std::ptrdiff_t>(rows.first_entry[i + 1]));
+    const std::span<const RayEntry> plain = rows.entries_of(i);
+    all.insert(all.end(), plain.begin(), plain.end());
     all.insert(all.end(), weighed[i].entries.begin(), weighed[i].entries.end());
     first.push_back(all.size());
   }
@@ -423,8 +405,8 @@ RayRows with_entries(RayRows rows, const std::vector<WeighedRow>& weighed) {
   return rows;
 }
 
-// The shares of both halves, of what is exposed. From what is covered rays see nothing but sides without patches; of a
-// clear patch all rays are told by stops, these too.
+// The shares of both halves, of the exposed part. From the covered part rays see nothing but sides without patches; all
+// rays of a clear patch have stops, these too.
 void add_lost(LostShare& lost, Eigen::Index i, const std::array<std::vector<WeighedRow>, 2>& halves, bool is_clear) {
   const double exposed = 1 - lost.covered[i];
   if (!(exposed > 0)) return;
@@ -438,14 +420,12 @@ void add_lost(LostShare& lost, Eigen::Index i, const std::array<std::vector<Weig
 
 }  // namespace
 
-// Each row as a whole times what makes its sum that of `wanted`. Where there are hits their weight, in double
-// precision, takes what entries lose by rounding.
+// Where there are hits their weight, in double precision, takes the loss of entries by rounding.
 void scale(RayRows& rows, const Eigen::VectorXd& wanted) {
   parallel_for(rows.hit_weight.size(), [&](std::size_t i) {
-    const auto hits = static_cast<double>(rows.first_hit[i + 1] - rows.first_hit[i]);
+    const auto hits = static_cast<double>(rows.hit_count(i));
     double sum = 0;
-    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-      sum += static_cast<double>(rows.entries[k].form_factor);
+    for (const RayEntry& entry : rows.entries_of(i)) sum += static_cast<double>(entry.form_factor);
     const double all = sum + hits * rows.hit_weight[i];
     if (!(all > 0)) return;
     const double factor = wanted[static_cast<Eigen::Index>(i)] / all;
@@ -464,7 +444,8 @@ TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& 
   const SpecularFaces& faces = occluder.specular_faces();
   std::array<std::vector<WeighedRow>, 2> weighed;
   for (std::size_t half = 0; half < 2; ++half) {
-    weighed[half] = weighed_half(rows.halves[half], faces);
+    weighed[half].resize(mesh.size());
+    parallel_for(mesh.size(), [&](std::size_t i) { weighed[half][i] = weighed_row(rows.halves[half], i, faces); });
     rows.halves[half] = with_entries(std::move(rows.halves[half]), weighed[half]);
   }
   for (PatchIndex i = 0; i < mesh.size(); ++i) {

@@ -19,8 +19,8 @@
 namespace patchlight {
 
 /// Where blocks of rows are kept while they are traced, so that a run that was stopped goes on where it was: one block
-/// for every `patches_of_a_block` patches, the last of them shorter. What stands in a block is known to trace_rows()
-/// alone. keep() is called from several threads, for different blocks.
+/// for every `patches_of_a_block` patches, the last of them shorter. Only trace_rows() knows the content of a block.
+/// keep() is called from several threads, for different blocks.
 struct RowBlocks {
   static constexpr PatchIndex patches_of_a_block = 4096;
 
@@ -28,25 +28,26 @@ struct RowBlocks {
   std::function<void(std::size_t block, std::span<const std::int32_t> words)> keep;
 };
 
-/// What becomes of a ray of a row at a stop.
+/// How a ray of a row goes on at a stop.
 enum class RayStep : std::uint8_t {
   sent,      ///< it starts from a clear polygon
   crossed,   ///< a shadow ray goes straight through a clear polygon
   through,   ///< a ray over the hemisphere goes straight through, drawn by SpecularFace::mirrored_rays()
   mirrored,  ///< or on as from a mirror
-  kept,      ///< it ends on a polygon that is specular, with what that holds
+  kept,      ///< it ends on a polygon that is specular, with the share that this holds
   ends       ///< it ends, with all that is left
 };
 inline constexpr std::uint32_t ray_steps = 6;
 
-/// A stop of a ray that is specular on its way, so that what it tells is another form factor for each colour of the
+/// A stop of a ray that is specular on its way, so that it has another form factor for each color of the
 /// clear polygons and mirrors on it: geometry alone, 16 bytes. The ray is all stops up to one with `kept` or `ends`.
 struct SpecularStop {
   static constexpr PatchIndex in_the_open = no_patch;  ///< a ray has left the scene
-  static constexpr PatchIndex at_back = no_patch - 1;  ///< it meets a side without patches, or what lies on the patch
+  static constexpr PatchIndex at_back =
+      no_patch - 1;  ///< it meets a side without patches, or a face that lies on the patch
 
-  PatchIndex patch = in_the_open;     ///< what is met
-  float form_factor = 0;              ///< what the ray counts there, if nothing was lost on its way and all is held
+  PatchIndex patch = in_the_open;     ///< that is met
+  float form_factor = 0;              ///< of the ray there, if nothing was lost on its way and all is held
   PolygonIndex polygon = no_polygon;  ///< the specular polygon that is met, or from which the ray starts
   std::uint32_t bits = 0;             ///< step, side and cosine of the angle there
 
@@ -56,7 +57,7 @@ struct SpecularStop {
   double cosine() const { return static_cast<double>(bits >> 4U) * 0x1p-28; }
 };
 
-/// What rays tell for one colour, ray by ray: tell(stop, form factor) at every stop, 0 where nothing is held.
+/// The form factors of rays for one color, ray by ray: tell(stop, form factor) at every stop, 0 where nothing is held.
 void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces& faces,
                        const std::function<void(const SpecularStop& stop, double form_factor)>& tell);
 
@@ -79,6 +80,14 @@ struct RayRows {
   LargeArray<RayEntry> entries;
   std::vector<std::uint64_t> first_stop = {};  ///< per patch; one more at the end; empty where nothing is specular
   LargeArray<SpecularStop> stops = {};         ///< of rays that are specular on their way
+
+  std::span<const RayEntry> entries_of(std::size_t i) const {
+    return std::span(entries).subspan(first_entry[i], first_entry[i + 1] - first_entry[i]);
+  }
+  std::span<const SpecularStop> stops_of(std::size_t i) const {
+    return std::span(stops).subspan(first_stop[i], first_stop[i + 1] - first_stop[i]);
+  }
+  std::uint64_t hit_count(std::size_t i) const { return first_hit[i + 1] - first_hit[i]; }
 };
 
 /// How rows of rays are found.
@@ -117,11 +126,11 @@ TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const Bri
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 
 /// Rows of form factors for one colour: that of the clear polygons and mirrors of an occluder, which is as that by
-/// which the rows were traced but for the colours. Each row sums up to what its patch sees by light of this colour.
-/// Rows without stops stay as they are. No ray is traced.
+/// which the rows were traced but for the colours. Each row sums up to the share that its patch sees by light of this
+/// color. Rows without stops stay as they are. No ray is traced.
 TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& occluder);
 
-/// Each row as a whole times what makes its sum that of `wanted`.
+/// Multiplies each row by the factor that makes its sum that of `wanted`.
 void scale(RayRows& rows, const Eigen::VectorXd& wanted);
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "patchlight/base/large_array.h"
 
 #include "base/parallel.h"
+#include "base/target_clones.h"
 
 #include <algorithm>
 #include <array>
@@ -14,20 +15,15 @@
 namespace patchlight {
 namespace {
 
-// Rows of one task.
-constexpr PatchIndex rows_of_task = 1024;
-
-// `width` columns, row by row without a gap, and where what they irradiate is added.
+// `width` columns, row by row without a gap, and where their irradiance is added.
 struct Columns {
   const double* values;
   double* sums;
   Eigen::Index stride;
 };
 
-// Hits ahead of which the field is fetched, more than the machine looks ahead by itself, and how near: into the second
-// cache, as more can be on their way to that than to the first.
-constexpr std::uint64_t hits_ahead = 256;
-constexpr int to_second_cache = 2;
+// Starts to read into the second cache: more can be on their way to that than to the first.
+PATCHLIGHT_INLINE void fetch(const double* value) { __builtin_prefetch(value, 0, 2); }
 
 // (F B)_i of one half for patches [begin, end), times `factor`, added to the sums. Each hit is one read from anywhere
 // in the field: the rows are read by plain pointers, so that nothing else is loaded between these.
@@ -40,17 +36,18 @@ void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchR
     Sum of_hits{};
     Sum of_entries{};
     const PatchIndex* const end = hits + rows.first_hit[i + 1];
-    const std::uint64_t ahead = std::min(hits_ahead, rows.hits.size() - rows.first_hit[i + 1]);
+    // The field is fetched farther ahead than the machine looks by itself.
+    const std::uint64_t ahead = std::min<std::uint64_t>(256, rows.hits.size() - rows.first_hit[i + 1]);
     for (const PatchIndex* hit = hits + rows.first_hit[i]; hit != end; ++hit) {
       const double* const soon = field + std::size_t{hit[ahead]} * width;
-      __builtin_prefetch(soon, 0, to_second_cache);
-      if constexpr (width > 1) __builtin_prefetch(soon + width - 1, 0, to_second_cache);
+      fetch(soon);
+      if constexpr (width > 1) fetch(soon + width - 1);
       const double* const values = field + std::size_t{*hit} * width;
       for (std::size_t band = 0; band < width; ++band) of_hits[band] += values[band];
     }
-    for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k) {
-      const double* const values = field + std::size_t{rows.entries[k].patch} * width;
-      const auto weight = static_cast<double>(rows.entries[k].form_factor);
+    for (const RayEntry& entry : rows.entries_of(i)) {
+      const double* const values = field + std::size_t{entry.patch} * width;
+      const auto weight = static_cast<double>(entry.form_factor);
       for (std::size_t band = 0; band < width; ++band) of_entries[band] += weight * values[band];
     }
     double* const sums = columns.sums + static_cast<Eigen::Index>(i) * columns.stride;
@@ -61,9 +58,8 @@ void add_rows(const RayRows& rows, const Columns& columns, double factor, PatchR
 
 double row_sum(const RayRows& rows, PatchIndex i) {
   double of_entries = 0;
-  for (std::uint64_t k = rows.first_entry[i]; k < rows.first_entry[i + 1]; ++k)
-    of_entries += static_cast<double>(rows.entries[k].form_factor);
-  return rows.hit_weight[i] * static_cast<double>(rows.first_hit[i + 1] - rows.first_hit[i]) + of_entries;
+  for (const RayEntry& entry : rows.entries_of(i)) of_entries += static_cast<double>(entry.form_factor);
+  return rows.hit_weight[i] * static_cast<double>(rows.hit_count(i)) + of_entries;
 }
 
 using AddRows = void (*)(const RayRows& rows, const Columns& columns, double factor, PatchRange patches);
@@ -82,6 +78,15 @@ LargeArray<double> packed(const FieldView& field, Eigen::Index first, Eigen::Ind
   return values;
 }
 
+// Calls use(range) for all patches, many at once.
+void for_ranges(PatchIndex size, const auto& use) {
+  constexpr PatchIndex at_once = 1024;
+  parallel_for((size + at_once - 1) / at_once, [&](std::size_t task) {
+    const auto begin = static_cast<PatchIndex>(task * at_once);
+    use(PatchRange{begin, std::min(size, begin + at_once)});
+  });
+}
+
 // The sum over some halves of their F B, each times `factor`.
 Field irradiance_by(std::span<const RayRows> halves, const FieldView& radiosity, double factor) {
   Field irradiance = Field::Zero(radiosity.rows(), radiosity.cols());
@@ -92,12 +97,8 @@ Field irradiance_by(std::span<const RayRows> halves, const FieldView& radiosity,
     const LargeArray<double> values = packed(radiosity, first, width);
     const AddRows add = add_rows_of_width[static_cast<std::size_t>(width - 1)];
     const Columns columns{values.data(), irradiance.data() + first, irradiance.cols()};
-    for (const RayRows& rows : halves) {
-      parallel_for((size + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {
-        const auto begin = static_cast<PatchIndex>(task * rows_of_task);
-        add(rows, columns, factor, {begin, std::min(size, begin + rows_of_task)});
-      });
-    }
+    for (const RayRows& rows : halves)
+      for_ranges(size, [&](PatchRange patches) { add(rows, columns, factor, patches); });
   }
   return irradiance;
 }
@@ -113,9 +114,8 @@ Field RayTransport::apply_half(std::size_t half, const FieldView& radiosity) con
 Eigen::VectorXd RayTransport::row_sums() const {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(size());
   for (const RayRows& rows : halves_) {
-    parallel_for((size() + rows_of_task - 1) / rows_of_task, [&](std::size_t task) {
-      const auto begin = static_cast<PatchIndex>(task * rows_of_task);
-      for (PatchIndex i = begin; i < std::min(size(), begin + rows_of_task); ++i) sums[i] += 0.5 * row_sum(rows, i);
+    for_ranges(size(), [&](PatchRange patches) {
+      for (PatchIndex i = patches.begin; i < patches.end; ++i) sums[i] += 0.5 * row_sum(rows, i);
     });
   }
   return sums;
@@ -149,10 +149,8 @@ std::vector<ClassEntry> entries_by_class(const RayRows& rows, const Scene& scene
                                          NumberedClasses& numbered) {
   std::vector<ClassEntry> entries;
   for (PatchIndex i = 0; i + 1 < rows.first_stop.size(); ++i) {
-    const std::span<const SpecularStop> stops(rows.stops.data() + rows.first_stop[i],
-                                              rows.first_stop[i + 1] - rows.first_stop[i]);
     WayClass way;
-    tell_form_factors(stops, faces, [&](const SpecularStop& stop, double form_factor) {
+    tell_form_factors(rows.stops_of(i), faces, [&](const SpecularStop& stop, double form_factor) {
       if (stop.patch < SpecularStop::at_back && form_factor > 0)
         entries.push_back({i, stop.patch, numbered.number_of(way), static_cast<float>(form_factor)});
       if (goes_on(stop.step())) way.push_back(meeting_of(stop, scene));

@@ -16,12 +16,12 @@
 
 namespace patchlight {
 
-/// What passes between the patches of a mesh, by rows of rays. Geometry alone decides the form factors; which lamps are
-/// found apart from the rows, and towards which bright patches rays are sent on purpose, follows from the light that
-/// there was when they were traced, so that other light scatters more.
+/// The exchange between the patches of a mesh, by rows of rays. Geometry alone decides the form factors. The light at
+/// the time of tracing decides which lamps are found apart from the rows and toward which bright patches rays are sent:
+/// other light scatters more.
 struct RayExchange {
   TracedRows rows;
-  std::vector<PatchRange> lamps;  ///< what is found apart: the patches of a side each, which emit alike
+  std::vector<PatchRange> lamps;  ///< found apart: the patches of a side each, which emit alike
   LampFactors lamp_factors;       ///< per patch and lamp
   std::vector<std::array<double, 2>> specular_kinds = {};  ///< SpecularFaces::kinds() of the polygons by which rows
                                                            ///< were traced; empty where none is specular

@@ -1,7 +1,7 @@
 #include "transport/row_tracer.h"
 
 #include "base/sampling.h"
-#include "form_factor/patch_keys.h"
+#include "base/streams.h"
 #include "form_factor/patch_shape.h"
 #include "scene/specular_faces.h"
 #include "transport/sights.h"
@@ -19,10 +19,6 @@ namespace {
 // Rays of a patch in each of two halves: between these, and a power of two.
 constexpr std::uint32_t fewest_rays = 8;
 
-// The error of patch i's irradiance falls with its rays, and counts by its area; with patches of very different sizes
-// more rays for the large ones pay. The exponent is measured: docs/theory/ray-method.md.
-constexpr double exponent = 0.4;
-
 // The power of two next to factor A_i^0.4.
 std::uint32_t rounded(double rays) {
   const double power = std::round(std::log2(std::clamp<double>(rays, fewest_rays, most_rays)));
@@ -32,9 +28,11 @@ std::uint32_t rounded(double rays) {
 }  // namespace
 
 std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
+  // The error of patch i's irradiance falls with its rays, and counts by its area: more rays pay for large patches. The
+  // exponent is measured: docs/theory/ray-method.md.
   std::vector<double> size;
   size.reserve(areas.size());
-  for (const double area : areas) size.push_back(std::pow(area, exponent));
+  for (const double area : areas) size.push_back(std::pow(area, 0.4));
   const auto sum = [&](double factor) {
     double all = 0;
     for (const double s : size) all += rounded(factor * s);
@@ -58,15 +56,6 @@ std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
 
 namespace {
 
-// Rays towards bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
-// in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance by
-// this.
-constexpr double least_gain = 1.75;
-
-// Rays of 32 neighbours, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
-// scatter.
-constexpr double least_share_by_chance = 1.0 / 128;
-
 // The variance of radiosity over the area, of those values that are not above a limit; the others are 0.
 double variance_up_to(const Eigen::VectorXd& radiosity, const Eigen::Map<const Eigen::VectorXd>& area, double limit) {
   const Eigen::ArrayXd kept = (radiosity.array() > limit).select(0, radiosity.array());
@@ -88,8 +77,13 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   const double least = threshold * expected.dot(area) / area.sum();
   const double all = variance_up_to(expected, area, std::numeric_limits<double>::infinity());
-  const bool meets_by_chance = share_above(expected, area, least) >= least_share_by_chance;
-  if (meets_by_chance && all < least_gain * variance_up_to(expected, area, least)) return;
+  // Rays of 32 neighbors, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
+  // scatter.
+  const bool meets_by_chance = share_above(expected, area, least) >= 1.0 / 128;
+  // Rays toward bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
+  // in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance
+  // by 1.75.
+  if (meets_by_chance && all < 1.75 * variance_up_to(expected, area, least)) return;
   double flux = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (!(expected[i] > least)) continue;
@@ -138,7 +132,7 @@ struct SamplePlace {
   float density;
 };
 
-// The place of a patch with these coordinates, and what its samples weigh there.
+// The place of a patch with these coordinates, and the weight of its samples there.
 SamplePlace place_on(const SampledPatch& patch, float u, float v) {
   if (patch.is_triangle) {
     const float root = std::sqrt(u);
@@ -158,9 +152,6 @@ std::vector<std::uint32_t> doubled(std::vector<std::uint32_t> counts, std::span<
 }
 
 }  // namespace
-
-// What the random points of a patch are for: they are independent.
-enum class RowTracer::Purpose : std::uint32_t { hemisphere, toward_bright };
 
 // The shadow rays of one patch towards bright ones, in one half.
 struct RowTracer::TowardBright {
@@ -185,8 +176,8 @@ RowTracer::RowTracer(const PatchMesh& mesh, const Occluder& occluder, const Brig
   assert(toward_bright_ % ShadowPacket::size == 0);
 }
 
-SampleSet RowTracer::samples(PatchIndex patch, Purpose purpose, std::uint32_t half) const {
-  return table_.of_pair(keys_[patch], static_cast<std::uint32_t>(purpose), half);
+SampleSet RowTracer::samples(PatchIndex patch, std::uint32_t purpose, std::uint32_t half) const {
+  return table_.of_pair(keys_[patch], purpose, half);
 }
 
 // Those of the first half, then those of the second.
@@ -196,7 +187,7 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
   std::vector<Ray> rays;
   rays.reserve(2 * std::size_t{counts_[patch]});
   for (const std::uint32_t half : {0U, 1U}) {
-    const SampleSet set = samples(patch, Purpose::hemisphere, half);
+    const SampleSet set = samples(patch, stream::hemisphere, half);
     for (std::size_t k = 0; k < counts_[patch]; ++k) {
       const Vector direction = square_to_cosine_hemisphere(coordinate(set, 0, k), coordinate(set, 1, k));
       rays.push_back(
@@ -266,7 +257,7 @@ void RowTracer::add_toward_bright(PatchIndex patch, RowEntries& entries) const {
                     static_cast<float>(counts_[patch]),
                     static_cast<float>(scale * scale / std::numbers::pi)};
   for (const std::uint32_t half : {0U, 1U}) {
-    rays.set = samples(patch, Purpose::toward_bright, half);
+    rays.set = samples(patch, stream::toward_bright_patches, half);
     add_toward_bright(rays, patch, half, entries);
   }
 }
@@ -292,13 +283,13 @@ void RowTracer::add_hits(PatchIndex patch, std::span<const Ray> rays, std::span<
 
 PatchRays RowTracer::trace_plain(PatchIndex patch, RowEntries& entries) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
-  const std::vector<Seen> seen = sights_.of_rays(patch, rays, hash({seed_, keys_[patch], 2}));
+  const std::vector<Seen> seen = sights_.of_rays(patch, rays, hash({seed_, keys_[patch], stream::ways_at_panes}));
   PatchRays told{{}, 0, count(seen, Sight::nothing), unseen(seen)};
   std::vector<PlainHit> hits;
   hits.reserve(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (!seen[k].hit) continue;
-    const Hit& hit = *seen[k].hit;
+    if (!seen[k].met) continue;
+    const Hit& hit = *seen[k].met;
     if (hit.distance > 0) told.inverse_lengths += 1 / hit.distance;
     if (seen[k].sight == Sight::patch) hits.push_back({k, &hit});
   }
@@ -314,8 +305,6 @@ PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
 
 namespace {
 
-bool has_left_the_scene(const Way& way) { return way.empty() || way.back().onward != Onward::ends; }
-
 bool is_specular_side(const SpecularFaces& faces, PolygonIndex polygon, Side side) {
   const SpecularFace* const face = faces.at(polygon);
   return face && face->is_specular(side);
@@ -323,13 +312,13 @@ bool is_specular_side(const SpecularFaces& faces, PolygonIndex polygon, Side sid
 
 }  // namespace
 
-// Of a clear patch, what each ray tells goes with what the patch holds at its angle.
+// Every ray of a clear patch counts by the share that the patch holds at its angle.
 bool RowTracer::starts_clear(PatchIndex patch) const {
   const SpecularFace* const face = occluder_.specular_faces().at(mesh_.polygon[patch]);
   return face && face->is_clear();
 }
 
-// What a ray over the hemisphere tells at a stop on its way.
+// A stop of a ray over the hemisphere on its way.
 SpecularStop RowTracer::stop_at(PatchIndex patch, const Ray& ray, const WayStop& at) const {
   const SpecularFaces& faces = occluder_.specular_faces();
   const Hit& hit = at.hit;
@@ -358,13 +347,13 @@ void RowTracer::add_stops(PatchIndex patch, const Ray& ray, const SeenWay& seen,
     start.set(RayStep::sent, mesh_.side[patch], cosine_between(mesh_.normal[patch], ray.direction));
     stops.push_back(start);
   }
-  for (const WayStop& stop : seen.way) stops.push_back(stop_at(patch, ray, stop));
-  if (!has_left_the_scene(seen.way)) {
-    if (seen.end == Sight::contact) stops.back().patch = SpecularStop::at_back;
+  for (const WayStop& stop : seen.met) stops.push_back(stop_at(patch, ray, stop));
+  if (!has_left(seen.met)) {
+    if (seen.sight == Sight::contact) stops.back().patch = SpecularStop::at_back;
     return;
   }
   SpecularStop last;
-  last.patch = seen.end == Sight::nothing ? SpecularStop::in_the_open : SpecularStop::at_back;
+  last.patch = seen.sight == Sight::nothing ? SpecularStop::in_the_open : SpecularStop::at_back;
   last.form_factor = 1 / static_cast<float>(counts_[patch]);
   last.set(RayStep::ends, Side::front, 0);
   stops.push_back(last);
@@ -372,20 +361,20 @@ void RowTracer::add_stops(PatchIndex patch, const Ray& ray, const SeenWay& seen,
 
 PatchRays RowTracer::trace_specular(PatchIndex patch, RowEntries& entries) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
-  const std::vector<SeenWay> seen = sights_.along_ways(patch, rays, hash({seed_, keys_[patch], 2}));
+  const std::vector<SeenWay> seen = sights_.along_ways(patch, rays, hash({seed_, keys_[patch], stream::ways_at_panes}));
   const bool is_clear = starts_clear(patch);
   PatchRays told;
   std::vector<PlainHit> hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const std::size_t half = k / counts_[patch];
-    const Way& way = seen[k].way;
+    const auto& [way, end] = seen[k];
     if (!way.empty() && way.back().hit.distance > 0) told.inverse_lengths += 1 / way.back().hit.distance;
-    const bool is_plain = way.size() < 2 && !(way.size() == 1 && way[0].onward != Onward::ends);
-    const bool is_unseen = is_plain && (seen[k].end == Sight::back || seen[k].end == Sight::contact);
+    const bool is_plain = way.empty() || (way.size() == 1 && !has_left(way));
+    const bool is_unseen = is_plain && (end == Sight::back || end == Sight::contact);
     if (is_unseen) ++told.unseen;
     if (is_clear || !is_plain) {
       add_stops(patch, rays[k], seen[k], entries.stops[half]);
-    } else if (seen[k].end == Sight::nothing) {
+    } else if (end == Sight::nothing) {
       ++told.escaped;
     } else if (!is_unseen) {
       hits.push_back({k, &way[0].hit});

@@ -17,6 +17,7 @@
 
 namespace patchlight {
 
+/// A patch takes no more rays in each of two halves.
 inline constexpr std::uint32_t most_rays = 4096;
 
 /// How many rays each patch takes in each of two halves, so that the mean over the patches of both together is about
@@ -25,10 +26,8 @@ inline constexpr std::uint32_t most_rays = 4096;
 /// in proportion to which patches matter.
 std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean);
 
-class Occluder;
-
 /// Patches from which much of the light is expected, towards which rays are sent on purpose: each with a probability in
-/// proportion to its share of their flux. What is expected decides about the error alone, never about the mean.
+/// proportion to its share of their flux. The expected light decides about the error alone, never about the mean.
 class BrightPatches {
  public:
   /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area;
@@ -61,7 +60,7 @@ class BrightPatches {
   std::vector<float> density_;  // per patch of the mesh
 };
 
-/// What the rays of one patch tell.
+/// The result of the rays of one patch.
 struct PatchRays {
   std::array<std::vector<PatchIndex>, 2> hits;  ///< per half: the patches met that are not bright
   double inverse_lengths = 0;                   ///< summed over its rays, 1/m
@@ -95,7 +94,6 @@ class RowTracer {
   PatchRays trace(PatchIndex patch, RowEntries& entries) const;
 
  private:
-  enum class Purpose : std::uint32_t;
   struct TowardBright;
   PatchRays trace_plain(PatchIndex patch, RowEntries& entries) const;
   PatchRays trace_specular(PatchIndex patch, RowEntries& entries) const;
@@ -112,7 +110,7 @@ class RowTracer {
                     RowEntries& into) const;
   std::vector<SpecularStop> crossing_stops(const ShadowPacket& packet, std::size_t lane, PatchIndex patch,
                                            const RayEntry& entry, std::span<const PolygonIndex> crossed) const;
-  SampleSet samples(PatchIndex patch, Purpose purpose, std::uint32_t half) const;
+  SampleSet samples(PatchIndex patch, std::uint32_t purpose, std::uint32_t half) const;
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   float entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const;
   RayEntry fill_lane(ShadowPacket& packet, std::size_t lane, const TowardBright& rays, std::size_t k) const;

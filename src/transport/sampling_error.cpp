@@ -11,9 +11,6 @@
 namespace patchlight {
 namespace {
 
-// So many pairs tell a variance to a quarter.
-constexpr std::uint64_t enough = 30;
-
 template <std::size_t n>
 AuditedPairs total(const std::array<AuditedPairs, n>& kinds) {
   AuditedPairs sum;
@@ -21,14 +18,25 @@ AuditedPairs total(const std::array<AuditedPairs, n>& kinds) {
   return sum;
 }
 
-// With the usual number of samples, if variances fall as one over the samples.
-AuditedPairs usual(AuditedPairs pairs, std::size_t effort_index) {
-  pairs.squares *= static_cast<double>(std::uint64_t{1} << effort_index);
-  return pairs;
-}
+// So many pairs tell a variance to a quarter.
+bool are_enough(const AuditedPairs& audited) { return audited.pairs >= 30; }
 
 double root_mean(const AuditedPairs& audited) {
   return audited.weight > 0 ? std::sqrt(audited.squares / audited.weight) : 0;
+}
+
+// The error of pairs with this effort by those that were audited, of each effort: where they are too few by all, if
+// variances fall as one over the samples; `unknown` without any.
+double pooled_error(const std::array<AuditedPairs, sampling_efforts>& by_effort, std::uint32_t effort, double unknown) {
+  const AuditedPairs& with_effort = by_effort[effort_index(effort)];
+  if (are_enough(with_effort)) return root_mean(with_effort);
+  AuditedPairs all;
+  for (std::size_t k = 0; k < sampling_efforts; ++k) {
+    AuditedPairs usual = by_effort[k];
+    usual.squares *= static_cast<double>(std::uint64_t{1} << k);
+    all += usual;
+  }
+  return all.pairs > 0 ? root_mean(all) / std::sqrt(effort) : unknown;
 }
 
 }  // namespace
@@ -72,40 +80,31 @@ bool was_audited(const SamplingError& error) {
 std::size_t effort_index(std::uint32_t effort) { return static_cast<std::size_t>(std::countr_zero(effort)); }
 
 std::uint32_t sampling_effort(double form_factor) {
-  constexpr double usual = 1.0 / 4096;
   std::uint32_t effort = 1;
-  for (double largest = usual; effort < most_effort && form_factor > largest; largest *= 2) effort *= 2;
+  for (double largest = 1.0 / 4096; effort < most_effort && form_factor > largest; largest *= 2) effort *= 2;
   return effort;
 }
 
 double standard_error(const SamplingError& error, double visible_share, std::uint32_t effort) {
   const auto bin = static_cast<std::size_t>(
       std::clamp(visible_share * SamplingError::bins, 0.0, static_cast<double>(SamplingError::bins - 1)));
-  const std::size_t index = effort_index(effort);
-  if (error.partial[index][bin].pairs >= enough) return root_mean(error.partial[index][bin]);
-  const AuditedPairs with_effort = total(error.partial[index]);
-  if (with_effort.pairs >= enough) return root_mean(with_effort);
-  AuditedPairs all;
-  for (std::size_t k = 0; k < sampling_efforts; ++k) all += usual(total(error.partial[k]), k);
-  return all.pairs > 0 ? root_mean(all) / std::sqrt(effort) : 1;
+  const AuditedPairs& alike = error.partial[effort_index(effort)][bin];
+  if (are_enough(alike)) return root_mean(alike);
+  std::array<AuditedPairs, sampling_efforts> by_effort;
+  for (std::size_t k = 0; k < sampling_efforts; ++k) by_effort[k] = total(error.partial[k]);
+  return pooled_error(by_effort, effort, 1);
 }
 
 double standard_error(const SamplingError::Unanimous& unanimous, std::uint32_t effort) {
-  const AuditedPairs& with_effort = unanimous.audited[effort_index(effort)];
-  if (with_effort.pairs >= enough) return root_mean(with_effort);
-  AuditedPairs all;
-  for (std::size_t k = 0; k < sampling_efforts; ++k) all += usual(unanimous.audited[k], k);
-  return all.pairs > 0 ? root_mean(all) / std::sqrt(effort) : 0;
+  return pooled_error(unanimous.audited, effort, 0);
 }
 
 double bound_on_miss(const SamplingError::Unanimous& unanimous) {
-  constexpr std::uint64_t enough_for_bound = 100;
-  constexpr double sure = 0.97;
   const std::uint64_t pairs = unanimous.pairs();
-  if (pairs < enough_for_bound) return 1;
+  if (pairs < 100) return 1;
   std::uint64_t below = 0;
   std::size_t step = 0;
-  while (step < SamplingError::Unanimous::steps && static_cast<double>(below) < sure * static_cast<double>(pairs)) {
+  while (step < SamplingError::Unanimous::steps && static_cast<double>(below) < 0.97 * static_cast<double>(pairs)) {
     below += unanimous.by_share[step++];
   }
   return static_cast<double>(step) / SamplingError::Unanimous::steps;

@@ -21,10 +21,7 @@ Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch) {
 
 namespace {
 
-// As many as shadow rays cross.
-constexpr std::uint64_t most_meetings = 64;
-
-// What a ray does at a stop that is not its last by number.
+// How a ray goes on at a stop that is not its last by number.
 Onward onward_at(const SpecularFaces& faces, const Hit& hit, double drawn) {
   const SpecularFace* const face = faces.at(hit.polygon);
   if (!face || !face->is_specular(hit.side)) return Onward::ends;
@@ -38,7 +35,7 @@ Way way_from(const Occluder& occluder, const std::optional<Hit>& first, std::uin
   std::optional<Hit> hit = first;
   for (std::uint64_t meeting = 0; hit; ++meeting) {
     way.push_back({*hit, Onward::ends});
-    if (meeting == most_meetings) return way;
+    if (meeting == Occluder::most_meetings) return way;
     WayStop& stop = way.back();
     stop.onward = onward_at(faces, stop.hit, hash({seed, key, meeting}) * 0x1p-32);
     if (stop.onward == Onward::ends) return way;
@@ -53,17 +50,9 @@ Way way_from(const Occluder& occluder, const std::optional<Hit>& first, std::uin
   return way;
 }
 
-// Second tries start this share of the way to the centroid, and this share of the scene's extent behind the patch.
-constexpr double toward_centroid = 0.01;
-constexpr double behind_plane = 1e-5;
-// A face that lies farther behind the patch than this share of that is no face in contact which rounding has bent.
-constexpr double bent_by_rounding = 0.2;
-
-// Ways by geometry alone: from clear polygons and mirrors every ray goes on, whatever their colours, at a clear one
-// with SpecularFace::mirrored_rays() as from a mirror, else straight, drawn by `seed` as
-// Occluder::first_held_hits() draws; after 64 it ends on the next one.
+// Drawn by `seed` as Occluder::first_held_hits() draws.
 std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> rays, std::uint64_t seed,
-                               std::span<const std::size_t> keys = {}) {
+                               std::span<const std::size_t> keys) {
   const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
   std::vector<Way> ways;
   ways.reserve(rays.size());
@@ -71,6 +60,10 @@ std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> ra
     ways.push_back(way_from(occluder, hits[k], seed, keys.empty() ? k : keys[k]));
   return ways;
 }
+
+// Where a ray ends; null where it has left the scene.
+const Hit* end_of(const std::optional<Hit>& hit) { return hit ? &*hit : nullptr; }
+const Hit* end_of(const Way& way) { return has_left(way) ? nullptr : &way.back().hit; }
 
 }  // namespace
 
@@ -82,14 +75,12 @@ int count(std::span<const Seen> among, Sight sight) {
 int unseen(std::span<const Seen> seen) { return count(seen, Sight::back) + count(seen, Sight::contact); }
 
 Sights::Sights(const PatchMesh& mesh, const Occluder& occluder)
-    : mesh_(mesh), occluder_(occluder), behind_(behind_plane * (1 / occluder.frame().scale)) {}
+    : mesh_(mesh), occluder_(occluder), behind_(1e-5 * (1 / occluder.frame().scale)) {}
 
 bool Sights::has_patches(const Hit& hit) const {
   const PatchRange range = mesh_.patches_on(hit.polygon, hit.side);
   return range.begin != range.end;
 }
-
-Seen Sights::seen_at(const Hit& hit) const { return {has_patches(hit) ? Sight::patch : Sight::back, hit}; }
 
 // 1 for each ray that starts where the patch is covered; it need not be traced.
 std::vector<std::uint8_t> Sights::covered_starts(PatchIndex patch, std::vector<Ray>& rays) const {
@@ -104,7 +95,7 @@ std::vector<std::uint8_t> Sights::covered_starts(PatchIndex patch, std::vector<R
 }
 
 Ray Sights::moved(PatchIndex patch, Ray ray) const {
-  ray.origin += toward_centroid * (mesh_.centroid[patch] - ray.origin) - behind_ * mesh_.normal[patch];
+  ray.origin += 0.01 * (mesh_.centroid[patch] - ray.origin) - behind_ * mesh_.normal[patch];
   return ray;
 }
 
@@ -117,71 +108,56 @@ bool Sights::lies_behind(PatchIndex patch, double height, const Hit& hit) const 
   const Vector& normal = mesh_.normal[patch];
   const Ray back{hit.point + (behind_ - height) * normal, -normal, mesh_.polygon[patch]};
   const auto next = occluder_.first_hits({&back, 1})[0];
-  return next && next->polygon == hit.polygon && next->distance > bent_by_rounding * behind_;
+  // A face that lies farther behind the patch is no face in contact that rounding has bent.
+  return next && next->polygon == hit.polygon && next->distance > 0.2 * behind_;
 }
 
 Sight Sights::sight_of_second_try(PatchIndex patch, const Ray& ray, const Hit& hit) const {
   const double height = hit.distance * ray.direction.dot(mesh_.normal[patch]);
   if (height < 2 * behind_ && lies_behind(patch, height, hit)) return Sight::nothing;
-  return height < 2 * behind_ ? Sight::contact : seen_at(hit).sight;
+  return height < 2 * behind_ ? Sight::contact : sight_at(hit);
 }
 
-std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
-  std::vector<Seen> seen(rays.size());
+template <typename Met, typename Trace>
+std::vector<SeenBy<Met>> Sights::seen_by(PatchIndex patch, std::vector<Ray> rays, const Trace& trace) const {
+  std::vector<SeenBy<Met>> seen(rays.size());
   const std::vector<std::uint8_t> covered = covered_starts(patch, rays);
+  std::vector<Met> met = trace(rays, std::span<const std::size_t>());
+  for (const Met& one : met)
+    if (const Hit* const hit = end_of(one))
+      __builtin_prefetch(&mesh_.first_patch[2 * std::size_t{hit->polygon} + static_cast<std::size_t>(hit->side)]);
   std::vector<Ray> second_tries;
   std::vector<std::size_t> tried_again;
-  const auto hits = occluder_.first_held_hits(rays, seed);
-  for (const auto& hit : hits)
-    if (hit)
-      __builtin_prefetch(&mesh_.first_patch[2 * std::size_t{hit->polygon} + static_cast<std::size_t>(hit->side)]);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     if (covered[k] != 0) {
       seen[k].sight = Sight::contact;
-      continue;
+    } else if (const Hit* const hit = end_of(met[k])) {
+      seen[k].sight = sight_at(*hit);
+    } else {
+      second_tries.push_back(moved(patch, rays[k]));
+      tried_again.push_back(k);
     }
-    if (hits[k]) {
-      seen[k] = seen_at(*hits[k]);
-      continue;
-    }
-    second_tries.push_back(moved(patch, rays[k]));
-    tried_again.push_back(k);
+    seen[k].met = std::move(met[k]);
   }
-  // What a clear polygon has let through once it lets through again: a second draw would hold back twice.
-  const auto second_hits = occluder_.first_held_hits(second_tries, seed, tried_again);
+  // A clear polygon lets through again a ray that it has let through once: a second draw would hold back twice.
+  met = trace(second_tries, tried_again);
   for (std::size_t k = 0; k < second_tries.size(); ++k) {
-    if (!second_hits[k]) continue;
-    const Sight sight = sight_of_second_try(patch, second_tries[k], *second_hits[k]);
-    if (sight != Sight::nothing) seen[tried_again[k]] = {sight, second_hits[k]};
+    const Hit* const hit = end_of(met[k]);
+    const Sight sight = hit ? sight_of_second_try(patch, second_tries[k], *hit) : Sight::nothing;
+    if (sight != Sight::nothing) seen[tried_again[k]] = {std::move(met[k]), sight};
   }
   return seen;
 }
 
+std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
+  return seen_by<std::optional<Hit>>(patch, std::move(rays), [&](const auto& some, const auto& keys) {
+    return occluder_.first_held_hits(some, seed, keys);
+  });
+}
+
 std::vector<SeenWay> Sights::along_ways(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
-  std::vector<SeenWay> seen(rays.size());
-  const std::vector<std::uint8_t> covered = covered_starts(patch, rays);
-  std::vector<Way> ways = specular_ways(occluder_, rays, seed);
-  std::vector<Ray> second_tries;
-  std::vector<std::size_t> tried_again;
-  const auto has_left = [](const Way& way) { return way.empty() || way.back().onward != Onward::ends; };
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    seen[k].way = std::move(ways[k]);
-    if (covered[k] != 0) {
-      seen[k].end = Sight::contact;
-    } else if (has_left(seen[k].way)) {
-      second_tries.push_back(moved(patch, rays[k]));
-      tried_again.push_back(k);
-    } else {
-      seen[k].end = seen_at(seen[k].way.back().hit).sight;
-    }
-  }
-  ways = specular_ways(occluder_, second_tries, seed, tried_again);
-  for (std::size_t k = 0; k < second_tries.size(); ++k) {
-    if (has_left(ways[k])) continue;
-    const Sight end = sight_of_second_try(patch, second_tries[k], ways[k].back().hit);
-    if (end != Sight::nothing) seen[tried_again[k]] = {std::move(ways[k]), end};
-  }
-  return seen;
+  return seen_by<Way>(patch, std::move(rays),
+                      [&](const auto& some, const auto& keys) { return specular_ways(occluder_, some, seed, keys); });
 }
 
 bool Sights::is_in_contact(const Hit& hit) const {

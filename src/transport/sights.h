@@ -17,7 +17,7 @@ namespace patchlight {
 /// A right-handed frame that turns with the patch: along its first edge, across it, and along the normal.
 Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch);
 
-/// What a ray does where it has met a polygon.
+/// How a ray goes on where it has met a polygon.
 enum class Onward : std::uint8_t { through, mirrored, ends };
 
 /// Where a ray has met a polygon.
@@ -26,33 +26,33 @@ struct WayStop {
   Onward onward = Onward::ends;
 };
 
-/// All polygons that a ray meets, each specular but for the last one; empty where it meets nothing. A ray that does not
-/// end at its last stop has left the scene from there. Most have one stop, for which no memory is asked for.
+/// All polygons that a ray meets, each specular but for the last one; empty where it meets nothing. Most rays have one
+/// stop, for which no memory is allocated.
 using Way = boost::container::small_vector<WayStop, 1>;
 
-/// What a ray from a patch meets: a side of a polygon that has patches, nothing, a side without patches, or a face that
+/// True when the ray does not end at its last stop: it has left the scene from there.
+inline bool has_left(const Way& way) { return way.empty() || way.back().onward != Onward::ends; }
+
+/// The end of a ray from a patch: a side of a polygon that has patches, nothing, a side without patches, or a face that
 /// lies against the patch.
 enum class Sight { patch, nothing, back, contact };
 
-/// What a ray meets, and where.
-struct Seen {
+/// The places that a ray meets, and its end.
+template <typename Met>
+struct SeenBy {
+  Met met = {};
   Sight sight = Sight::nothing;
-  std::optional<Hit> hit = {};
 };
+using Seen = SeenBy<std::optional<Hit>>;
+using SeenWay = SeenBy<Way>;  ///< over specular polygons
 
-/// What a ray meets on its way over specular polygons, and what ends it.
-struct SeenWay {
-  Way way;
-  Sight end = Sight::nothing;
-};
-
-/// How many rays have met this.
+/// How many rays have this end.
 int count(std::span<const Seen> among, Sight sight);
 
-/// How many have met what is no surroundings: sides without patches, or faces that lie against the patch.
+/// How many have met no surroundings: sides without patches, or faces that lie against the patch.
 int unseen(std::span<const Seen> seen);
 
-/// What rays from patches meet: the one rule by which lost shares and rows of rays are counted.
+/// The rule by which all lost shares and rows of rays classify the ends of rays from patches.
 class Sights {
  public:
   /// Keeps references to both.
@@ -64,7 +64,8 @@ class Sights {
   /// probability of their transmittance, drawn by `seed`.
   std::vector<Seen> of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
 
-  /// The same of specular_ways().
+  /// The same by geometry alone: from clear polygons and mirrors every ray goes on, whatever their colors, at a clear
+  /// one with SpecularFace::mirrored_rays() as from a mirror, else straight.
   std::vector<SeenWay> along_ways(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
 
   /// Whether a side that is met has patches.
@@ -75,7 +76,10 @@ class Sights {
   bool is_in_contact(const Hit& hit) const;
 
  private:
-  Seen seen_at(const Hit& hit) const;
+  Sight sight_at(const Hit& hit) const { return has_patches(hit) ? Sight::patch : Sight::back; }
+  // `trace` gives the places that rays meet, with their keys.
+  template <typename Met, typename Trace>
+  std::vector<SeenBy<Met>> seen_by(PatchIndex patch, std::vector<Ray> rays, const Trace& trace) const;
   std::vector<std::uint8_t> covered_starts(PatchIndex patch, std::vector<Ray>& rays) const;
   Ray moved(PatchIndex patch, Ray ray) const;
   // Whether a face that a second try met at this height over its start lies behind the patch, or under it in its plane.

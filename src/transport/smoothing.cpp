@@ -20,8 +20,8 @@ namespace {
 // Bits of a place along one axis: those of three axes fit into one number.
 constexpr int bits = 20;
 
-// Patches whose cells one task finds.
-constexpr std::size_t found_at_once = 4096;
+// Patches of one task.
+constexpr std::size_t patches_of_task = 1024;
 
 using Places = std::array<std::uint64_t, 3>;  // along x, y and z
 
@@ -50,26 +50,20 @@ std::uint64_t code_of(const Places& places) {
 
 Places places_of(std::uint64_t code) { return {gathered(code >> 2), gathered(code >> 1), gathered(code)}; }
 
-Box box_around(const std::vector<Point>& points) {
-  Box box;
-  for (const Point& point : points) box.extend(point);
-  return box;
-}
-
 }  // namespace
 
 PatchCells::PatchCells(const PatchMesh& mesh, double length) : centroids_(mesh.centroid), places_(mesh.size()) {
   assert(length > 0);
   if (places_.empty()) return;
-  const Box box = box_around(mesh.centroid);
-  // A little wider: patches as near as `length` lie in one cell or in neighbouring ones although their places are
-  // rounded.
-  constexpr double wider = 1 + 0x1p-30;
+  Box box;
+  for (const Point& centroid : mesh.centroid) box.extend(centroid);
   const int halvings = bits - 2 - std::ilogb(std::max(1.0, box.sizes().maxCoeff() / length));
-  edge_ = std::ldexp(wider * length, -halvings);
-  parallel_for((mesh.size() + found_at_once - 1) / found_at_once, [&](std::size_t task) {
-    const std::size_t end = std::min<std::size_t>(mesh.size(), (task + 1) * found_at_once);
-    for (std::size_t i = task * found_at_once; i < end; ++i) {
+  // A little wider: patches as near as `length` lie in one cell or in neighboring ones although their places are
+  // rounded.
+  edge_ = std::ldexp((1 + 0x1p-30) * length, -halvings);
+  parallel_for((mesh.size() + patches_of_task - 1) / patches_of_task, [&](std::size_t task) {
+    const std::size_t end = std::min<std::size_t>(mesh.size(), (task + 1) * patches_of_task);
+    for (std::size_t i = task * patches_of_task; i < end; ++i) {
       const Vector edges = (mesh.centroid[i] - box.min()) / edge_;
       const auto along = [&](int axis) { return static_cast<std::uint64_t>(edges[axis]); };
       places_[i] = {code_of({along(0), along(1), along(2)}), static_cast<PatchIndex>(i)};
@@ -110,7 +104,7 @@ NearPatches PatchCells::around(const Cell& home) const {
 
 namespace {
 
-// Neighbours lie within this share of the mean distance of what is seen.
+// Neighbors lie within this share of the mean distance of the surroundings.
 constexpr double reach = 0.2;
 
 // About so many at most.
@@ -119,15 +113,11 @@ constexpr double most_neighbours = 32;
 // Their normals' cosine is above this one, that of 25 degrees.
 constexpr double least_cosine = 0.9;
 
-// They lie no farther from the patch's plane than this share of the radius.
-constexpr double off_plane = 0.2;
-
 // The slopes of the regression are held back by this share of the weights, so that it is a mean where neighbours lie on
 // one side.
 constexpr double ridge = 0.05;
 
-// Patches that one task smooths, and candidates whose distances are found together.
-constexpr std::size_t smoothed_at_once = 1024;
+// Candidates whose distances are found together.
 constexpr std::size_t measured_at_once = 64;
 
 struct Neighbour {
@@ -168,16 +158,15 @@ struct LookingPatch {
   Vector along = normal.unitOrthogonal();
   Vector across = normal.cross(along);
 
-  // Is a patch within the radius, at `to` from here, a neighbour?
+  // Is a patch within the radius, at `to` from here, a neighbor? In about one plane, and looking the same way.
   bool is_neighbour(PatchIndex j, const Way& to, double cosine) const {
     const double reach_of_other = reach * static_cast<double>(smoother.distance[j]);
     return cosine >= least_cosine && to.squared_length() <= reach_of_other * reach_of_other &&
-           std::abs(to.along(normal)) <= off_plane * radius;
+           std::abs(to.along(normal)) <= 0.2 * radius;
   }
   Neighbour neighbour(PatchIndex j, const Way& to, double cosine) const {
-    constexpr double per_cosine = 1 / (1 - least_cosine);
     const double near = 1 - 0.75 * share * share * to.squared_length();
-    const double alike = per_cosine * (cosine - least_cosine);
+    const double alike = 1 / (1 - least_cosine) * (cosine - least_cosine);
     return {j, smoother.mesh.area[j] * near * alike, share * to.along(along), share * to.along(across)};
   }
 };
@@ -223,7 +212,7 @@ std::vector<Neighbour> Smoother::neighbours(PatchIndex i, const NearPatches& can
   return found;
 }
 
-// What each neighbour's value counts in the regression's value at the centroid; they sum up to 1.
+// The weights of the neighbors' values in the regression's value at the centroid; they sum up to 1.
 std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
   double sum = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
   for (const Neighbour& n : neighbours) {
@@ -248,10 +237,6 @@ std::vector<double> coefficients(const std::vector<Neighbour>& neighbours) {
   return of_each;
 }
 
-// Two halves with errors of this variance alone, 2 v in each of them, have a product of their distances from what is
-// smoothed that is more than nine of it once in some 500 times.
-constexpr double most_off = 9;
-
 // The same places of fields of as many patches and bands.
 struct Smoothing {
   const std::array<Field, 2>& halves;
@@ -259,7 +244,7 @@ struct Smoothing {
 };
 
 // Of neighbours with their coefficients: the means of `width` bands from `place` on in both halves, and as the variance
-// the weighted sum of the squares of what either half is off their mean.
+// the weighted sum of the squares of the distance of either half from their mean.
 template <std::size_t width>
 void sum_up(const Smoothing& fields, Eigen::Index place, Eigen::Index band, const std::vector<Neighbour>& neighbours,
             const std::vector<double>& c) {
@@ -302,7 +287,8 @@ bool is_apart(const Smoothing& fields, Eigen::Index first, Eigen::Index last, do
     };
     const double variance =
         std::max(factor * fields.into.variance.data()[place], squared_difference(fields.halves, place));
-    if (off(0) * off(1) > most_off * variance) return true;
+    // The errors of both halves alone, 2 v in each of them, exceed this once in some 500 times.
+    if (off(0) * off(1) > 9 * variance) return true;
   }
   return false;
 }
@@ -367,9 +353,9 @@ SmoothedHalves smoothed(const PatchMesh& mesh, std::span<const float> distance, 
                          widest_radius(mesh.area.empty() ? 1 : *std::max_element(mesh.area.begin(), mesh.area.end())));
   for (const auto& [level, places] : places_by_level(smoother, cells)) {
     const std::span<const std::size_t> of_level(places);
-    parallel_for((places.size() + smoothed_at_once - 1) / smoothed_at_once, [&, level = level](std::size_t task) {
-      const std::size_t first = task * smoothed_at_once;
-      const std::size_t count = std::min(smoothed_at_once, of_level.size() - first);
+    parallel_for((places.size() + patches_of_task - 1) / patches_of_task, [&, level = level](std::size_t task) {
+      const std::size_t first = task * patches_of_task;
+      const std::size_t count = std::min(patches_of_task, of_level.size() - first);
       smooth_places(smoother, cells, of_level.subspan(first, count), level, {halves, into});
     });
   }

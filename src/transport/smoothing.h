@@ -59,7 +59,7 @@ class PatchCells {
   std::vector<Place> places_;
 };
 
-/// Two independent estimates of an irradiance, smoothed, and what their mean still scatters.
+/// Two independent estimates of an irradiance, smoothed, and the variance left to their mean.
 struct SmoothedHalves {
   std::array<Field, 2> halves;
   Field variance;  ///< of the mean of both

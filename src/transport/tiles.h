@@ -4,21 +4,42 @@
 #include "patchlight/base/large_array.h"
 #include "patchlight/transport/exchange_areas.h"
 
+#include "base/parallel.h"
+
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace patchlight {
 
 /// Rows and columns of a tile.
 inline constexpr PatchIndex tile_edge = 64;
 
+/// Partial sums of products are kept per stripe of rows. Their number is fixed: so the bits do not depend on the
+/// threads.
+inline constexpr PatchIndex stripes = 8;
+
+/// The sum over all rows below `rows` of the values that add(row, sum) adds to a copy of `zero`. Stripe s takes the
+/// rows s, s + count,
+/// ...: long and short rows spread evenly.
+template <typename Sum, typename Add>
+Sum sum_over_stripes(PatchIndex rows, PatchIndex count, const Sum& zero, Add add) {
+  std::vector<Sum> partial(count, zero);
+  parallel_for(count, [&](std::size_t stripe) {
+    for (auto row = static_cast<PatchIndex>(stripe); row < rows; row += count) add(row, partial[stripe]);
+  });
+  for (PatchIndex stripe = 1; stripe < count; ++stripe) partial[0] += partial[stripe];
+  return std::move(partial[0]);
+}
+
 /// How ExchangeAreas are stored: square tiles of tile_edge x tile_edge entries for block rows I <= J, row by row; a
-/// diagonal tile holds both of its halves, and rows and columns beyond size() are zero. For what multiplies with tiles;
-/// everything else goes through entry_parts(), for_entries() and changed().
+/// diagonal tile holds both of its halves, and rows and columns beyond size() are zero. For products with tiles;
+/// all other code goes through entry_parts(), for_entries() and changed().
 struct Tiles {
   /// Number of block rows.
   static PatchIndex blocks(const ExchangeAreas& S);
@@ -35,22 +56,10 @@ inline float narrow_toward_zero(double value) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1);
 }
 
-// What closure, the merging of parents, the draws of errors and the writers ask of a storage of exchange areas:
-// ExchangeAreas::at() and set(), multiply() and row_sums() of exchange_areas.h, and entry_parts(), for_entries() and
-// changed() of this file. Another storage has functions of these names, too.
-
 /// In how many parts for_entries() goes through the entries: every pair of patches is in one of them.
-PatchIndex entry_parts(const ExchangeAreas& S);
+inline PatchIndex entry_parts(const ExchangeAreas& S) { return Tiles::blocks(S); }
 
 /// Calls use(i, j, S_ij) for the entries i < j of a part that are not 0, always in the same order.
-template <typename Use>
-void for_entries(const ExchangeAreas& S, PatchIndex part, Use use);
-
-/// Every entry S_ij that is not 0 replaced by value(i, j, S_ij) = value(j, i, S_ij), narrowed toward zero. `value` is
-/// called by several threads at once.
-using Change = std::function<double(PatchIndex i, PatchIndex j, double entry)>;
-ExchangeAreas changed(ExchangeAreas S, const Change& value);
-
 template <typename Use>
 void for_entries(const ExchangeAreas& S, PatchIndex part, Use use) {
   const PatchIndex I = part;
@@ -63,6 +72,11 @@ void for_entries(const ExchangeAreas& S, PatchIndex part, Use use) {
     }
   }
 }
+
+/// Every entry S_ij that is not 0 replaced by value(i, j, S_ij) = value(j, i, S_ij), narrowed toward zero. `value` is
+/// called by several threads at once.
+using Change = std::function<double(PatchIndex i, PatchIndex j, double entry)>;
+ExchangeAreas changed(ExchangeAreas S, const Change& value);
 
 /// Values of all bands, arranged for the products with tiles: eight patches of one band side by side, then the next
 /// band; padded with zeros to whole tiles.

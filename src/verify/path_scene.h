@@ -9,7 +9,6 @@
 #include "light/pane.h"
 #include "scene/specular_faces.h"
 #include "visibility/occluder.h"
-#include "visibility/tracing.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,7 @@
 #include "visibility/hit_filter.h"
 
 #include "base/target_clones.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <array>
@@ -9,20 +10,17 @@
 namespace patchlight {
 namespace {
 
-// in_plane_tolerance for rays whose ends are given in double.
-constexpr double on_plane_tolerance = 1e-9;
-
 // Between faces that lie one over the other the order is known, and rounding does not decide on it: a ray that starts
 // on one of them is not blocked by the other, which may lie before it by in_plane_tolerance.
-double tolerance_for(const TrianglePlane& plane, const ExactRay& ray, const CoveredPlaces* places) {
+double tolerance_for(const TrianglePlane& plane, const Segment& ray, const CoveredPlaces* places) {
   const bool is_together = places != nullptr && (places->lie_in_one_plane(plane.polygon, ray.from_polygon) ||
                                                  places->lie_in_one_plane(plane.polygon, ray.to_polygon));
-  return is_together ? in_plane_tolerance : on_plane_tolerance;
+  return is_together ? in_plane_tolerance : tolerance_of_shapes;
 }
 
 // A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
 // ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
-bool separates(const TrianglePlane& plane, const ExactRay& ray, double tolerance) {
+bool separates(const TrianglePlane& plane, const Segment& ray, double tolerance) {
   if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);
@@ -33,7 +31,6 @@ bool separates(const TrianglePlane& plane, const ExactRay& ray, double tolerance
 // t |n . d| and (1 - t) |n . d|, that single precision tells them apart. A ray without an end has none on the far side.
 template <unsigned N>
 PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, bool is_endless, unsigned char* clear) {
-  constexpr float clear_height = 1e-4F;
   for (unsigned k = 0; k < N; ++k) {
     const float x = RTCHitN_Ng_x(hits.hit, N, k);
     const float y = RTCHitN_Ng_y(hits.hit, N, k);
@@ -45,13 +42,13 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
     // Far from the scene's middle single precision tells less.
     const float far = std::max({1.0F, std::abs(RTCRayN_org_x(hits.ray, N, k)), std::abs(RTCRayN_org_y(hits.ray, N, k)),
                                 std::abs(RTCRayN_org_z(hits.ray, N, k))});
-    const float least = clear_height * clear_height * far * far * (x * x + y * y + z * z);
+    const float least = 1e-4F * 1e-4F * far * far * (x * x + y * y + z * z);
     clear[k] = static_cast<unsigned char>(static_cast<int>(height * height > least) & static_cast<int>(nearer > 0));
   }
 }
 
 // Where the ray meets the plane, does another polygon lie over it?
-bool is_covered(const TrianglePlane& plane, const ExactRay& ray, const CoveredPlaces& places) {
+bool is_covered(const TrianglePlane& plane, const Segment& ray, const CoveredPlaces& places) {
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);
   const Point place = ray.from + from / (from - to) * (ray.to - ray.from);
@@ -62,7 +59,7 @@ bool is_covered(const TrianglePlane& plane, const ExactRay& ray, const CoveredPl
 
 RTCRay16 new_rays() {
   RTCRay16 rays;
-  for (unsigned k = 0; k < packet_size; ++k) {
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) {
     rays.tnear[k] = 0;
     rays.tfar[k] = 1;
     rays.time[k] = 0;
@@ -75,18 +72,16 @@ RTCRay16 new_rays() {
 
 RTCRay16 rays_of(const ShadowPacket& packet) {
   RTCRay16 rays = new_rays();
-  for (std::size_t k = 0; k < ShadowPacket::size; ++k) {
-    rays.org_x[k] = packet.from_x[k];
-    rays.org_y[k] = packet.from_y[k];
-    rays.org_z[k] = packet.from_z[k];
-    rays.dir_x[k] = packet.toward_x[k];
-    rays.dir_y[k] = packet.toward_y[k];
-    rays.dir_z[k] = packet.toward_z[k];
-  }
+  std::copy(packet.from_x.begin(), packet.from_x.end(), rays.org_x);
+  std::copy(packet.from_y.begin(), packet.from_y.end(), rays.org_y);
+  std::copy(packet.from_z.begin(), packet.from_z.end(), rays.org_z);
+  std::copy(packet.toward_x.begin(), packet.toward_x.end(), rays.dir_x);
+  std::copy(packet.toward_y.begin(), packet.toward_y.end(), rays.dir_y);
+  std::copy(packet.toward_z.begin(), packet.toward_z.end(), rays.dir_z);
   return rays;
 }
 
-ExactRay exact_ray(const ShadowPacket& rays, std::size_t k) {
+Segment exact_ray(const ShadowPacket& rays, std::size_t k) {
   const Point from(rays.from_x[k], rays.from_y[k], rays.from_z[k]);
   const Vector toward(rays.toward_x[k], rays.toward_y[k], rays.toward_z[k]);
   return {from, from + toward, rays.from_polygon[k], rays.to_polygon[k]};
@@ -97,8 +92,9 @@ void keep_separating_hits(const RTCFilterFunctionNArguments* arguments) {
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
   const auto& triangles = *static_cast<const TriangleScene*>(arguments->geometryUserPtr);
   const ShadowPacket* const packet = context->packet;
-  std::array<unsigned char, packet_size> clear{};
-  if (arguments->N == packet_size && packet != nullptr) mark_clear_hits<packet_size>(*arguments, false, clear.data());
+  std::array<unsigned char, ShadowPacket::size> clear{};
+  if (arguments->N == ShadowPacket::size && packet != nullptr)
+    mark_clear_hits<ShadowPacket::size>(*arguments, false, clear.data());
   if (arguments->N == 1 && context->is_endless) mark_clear_hits<1>(*arguments, true, clear.data());
   for (unsigned k = 0; k < arguments->N; ++k) {
     if (arguments->valid[k] != -1) continue;
@@ -130,11 +126,11 @@ void list_crossed(const RTCFilterFunctionNArguments* arguments) {
     const TrianglePlane& plane = planes[RTCHitN_primID(arguments->hit, arguments->N, k)];
     const bool crosses = context->packet != nullptr
                              ? separates(plane, exact_ray(*context->packet, ray), in_plane_tolerance)
-                             : separates(plane, context->rays[ray], on_plane_tolerance);
+                             : separates(plane, context->rays[ray], tolerance_of_shapes);
     Crossed& crossed = context->crossed[ray];
-    const auto end = crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count);
-    if (!crosses || std::find(crossed.polygons.begin(), end, plane.polygon) != end) continue;
-    if (crossed.count < Crossed::most) crossed.polygons[crossed.count++] = plane.polygon;
+    const std::span<PolygonIndex> listed = crossed.all();
+    if (!crosses || std::find(listed.begin(), listed.end(), plane.polygon) != listed.end()) continue;
+    if (crossed.count < crossed.polygons.size()) crossed.polygons[crossed.count++] = plane.polygon;
   }
 }
 

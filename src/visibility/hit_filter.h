@@ -10,10 +10,11 @@
 #include <array>
 #include <cstddef>
 #include <embree3/rtcore.h>
+#include <span>
 
 namespace patchlight {
 
-/// The plane of one triangle, in recentred coordinates, with the polygon that the triangle belongs to.
+/// The plane of one triangle, in recentered coordinates, with the polygon that the triangle belongs to.
 struct TrianglePlane {
   Vector normal;
   double offset = 0;
@@ -26,7 +27,7 @@ struct TrianglePlane {
 struct TriangleScene {
   RTCScene scene = nullptr;
   LargeArray<TrianglePlane> planes;   ///< per triangle
-  LargeArray<PolygonIndex> polygons;  ///< per triangle, side by side: most of what filters ask for
+  LargeArray<PolygonIndex> polygons;  ///< per triangle, side by side: filters ask mostly for these
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -36,40 +37,30 @@ struct TriangleScene {
   }
 };
 
-/// Rays of a packet, as Embree counts.
-inline constexpr unsigned packet_size = ShadowPacket::size;
-
-/// One ray in double: what decides whether a hit that Embree finds in single precision is one.
-struct ExactRay {
-  Point from;
-  Point to;  ///< or, for a ray without an end, a point far along it
-  PolygonIndex from_polygon = no_polygon;
-  PolygonIndex to_polygon = no_polygon;
-};
-
 /// Sixteen rays from 0 to 1 as Embree takes them, of which origins and directions are still to be set.
 RTCRay16 new_rays();
 
 /// The rays of a packet as Embree takes them.
 RTCRay16 rays_of(const ShadowPacket& packet);
 
-/// Ray k of a packet.
-ExactRay exact_ray(const ShadowPacket& rays, std::size_t k);
+/// Ray k of a packet, in double precision.
+Segment exact_ray(const ShadowPacket& rays, std::size_t k);
 
 /// The clear polygons that one ray crosses.
 struct Crossed {
-  static constexpr std::size_t most = 64;
-  std::array<PolygonIndex, most> polygons;
+  std::array<PolygonIndex, Occluder::most_meetings> polygons;
   std::size_t count = 0;
+
+  std::span<PolygonIndex> all() { return std::span(polygons).first(count); }
 };
 
-/// What the filter needs beside Embree's own context.
+/// The filter's data beside Embree's own context.
 struct Context {
-  RTCIntersectContext embree;  ///< first, so that a pointer to it is a pointer to the whole
-  const ExactRay* rays = nullptr;
+  RTCIntersectContext embree;                     ///< first, so that a pointer to it is a pointer to the whole
+  const Segment* rays = nullptr;                  ///< recentered; they decide whether a hit in single precision is one
   const ShadowPacket* packet = nullptr;           ///< in place of rays
   const CoveredPlaces* covered_places = nullptr;  ///< hits on these do not count, if given
-  Crossed* crossed = nullptr;                     ///< per ray: what list_crossed() finds
+  Crossed* crossed = nullptr;                     ///< per ray: the result of list_crossed()
   bool is_endless = false;                        ///< whether the ray, a single one, has no end
 };
 

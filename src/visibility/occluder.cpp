@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <embree3/rtcore.h>
 #include <limits>
+#include <mutex>
 #include <new>
 #include <numeric>
 #include <stdexcept>
@@ -107,8 +108,6 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
 
 // Which polygons take part in tracing; marks are 1 per polygon that does not.
 
-std::vector<std::uint8_t> none_of(const Scene& scene) { return std::vector<std::uint8_t>(scene.polygons.size(), 0); }
-
 // Whether clear polygons let light through.
 bool lets_through(Occluder::Blockers which) {
   return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
@@ -123,22 +122,15 @@ std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const
 
 // The polygons that cannot stand in the way of a segment.
 std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
-  if (which == Occluder::Blockers::all) return none_of(scene);
-  if (which == Occluder::Blockers::none) return std::vector<std::uint8_t>(scene.polygons.size(), 1);
   if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
-  std::vector<std::uint8_t> left_out;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    left_out.push_back(is_opening(scene, p) == (which == Occluder::Blockers::opaque));
-  return left_out;
+  std::vector<std::uint8_t> left_out(scene.polygons.size(), which == Occluder::Blockers::none ? 1 : 0);
+  return lets_through(which) ? left_out : without_kind(left_out, scene, which == Occluder::Blockers::opaque);
 }
 
 // The polygons that rays do not meet: those of the other kind, where only one kind is asked for.
 std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
-  return lets_through(which) ? none_of(scene) : left_out_by(which, scene);
+  return left_out_by(lets_through(which) ? Occluder::Blockers::all : which, scene);
 }
-
-// Rays are traced in a scene of unit extent: so far along a ray lies nothing any more. Origins may lie outside.
-constexpr double beyond = 1e6;
 
 RTCIntersectContext new_context() {
   RTCIntersectContext context;
@@ -146,7 +138,14 @@ RTCIntersectContext new_context() {
   return context;
 }
 
-// What Embree is asked for one ray, in recentred coordinates.
+// The context of a packet, whose rays are coherent.
+Context context_of(const ShadowPacket& packet, Crossed* crossed = nullptr) {
+  Context context{new_context(), nullptr, &packet, nullptr, crossed};
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+// Embree's query for one ray, in recentered coordinates.
 RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
   const Eigen::Vector3f o = from.cast<float>();
   const Eigen::Vector3f d = toward.cast<float>();
@@ -156,18 +155,22 @@ RTCRayHit new_query(const Point& from, const Vector& toward, float farthest) {
   return query;
 }
 
-// A number minus itself is 0 unless it is infinite or not a number. Embree's traversal is undefined for
-// such rays. They come from a defect: an assertion finds it, and in a release they count as blocked.
+// Embree's traversal is undefined for rays with infinite numbers. They come from a defect: an assertion finds it, and
+// in a release they count as blocked.
 bool is_finite(const RTCRay16& rays, unsigned k) {
   const float sum = rays.org_x[k] + rays.org_y[k] + rays.org_z[k] + rays.dir_x[k] + rays.dir_y[k] + rays.dir_z[k];
-  const bool finite = sum - sum == 0;
+  const bool finite = sum - sum == 0;  // unless it is infinite or not a number
   assert(finite);
   return finite;
 }
 
-bool covers_end(const CoveredPlaces& places, const ExactRay& ray) {
-  return places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
+// A ray whose end is covered need not be traced, which would meet all polygons in that plane.
+bool covers_end(const CoveredPlaces& places, const Segment& ray) {
+  return places.any() && places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
 }
+
+// Whether bit k is set.
+bool has_bit(unsigned bits, unsigned k) { return (bits >> k & 1) != 0; }
 
 }  // namespace
 
@@ -183,7 +186,7 @@ struct Occluder::Tracer {
   Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met, SpecularFaces of_scene);
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
-  float arriving_along(const ExactRay& ray, Crossed crossed) const;
+  float arriving_along(const Segment& ray, Crossed crossed) const;
   std::array<Crossed, ShadowPacket::size> crossed_by(const ShadowPacket& packet, unsigned blocked) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
   Hit hit_at(const Ray& ray, const TrianglePlane& plane, float found) const;
@@ -206,22 +209,22 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<con
 }
 
 // The product over the polygons in their order in the scene: the same bits in whichever order they were met.
-float Occluder::Tracer::arriving_along(const ExactRay& ray, Crossed crossed) const {
-  std::sort(crossed.polygons.begin(), crossed.polygons.begin() + static_cast<std::ptrdiff_t>(crossed.count));
+float Occluder::Tracer::arriving_along(const Segment& ray, Crossed crossed) const {
+  std::ranges::sort(crossed.all());
   const Vector direction = (ray.to - ray.from).normalized();
   double share =
       specular.relative_held(ray.from_polygon, direction) * specular.relative_held(ray.to_polygon, direction);
-  for (std::size_t k = 0; k < crossed.count; ++k) share *= specular.transmittance(crossed.polygons[k], direction);
+  for (const PolygonIndex polygon : crossed.all()) share *= specular.transmittance(polygon, direction);
   return static_cast<float>(share);
 }
 
-// What arrives along segments: 0 for one that is blocked, else the product of the shares on its way.
+// The share that arrives along each segment: 0 for one that is blocked, else the product of the shares on its way.
 void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* arriving) const {
   const CoveredPlaces& covered_places = faces->covered_places;
   alignas(64) RTCRay16 rays = new_rays();
-  alignas(64) int valid[packet_size];
-  ExactRay exact[packet_size];
-  for (unsigned k = 0; k < packet_size; ++k) {
+  alignas(64) int valid[ShadowPacket::size];
+  Segment exact[ShadowPacket::size];
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) {
     // Lanes beyond the last segment repeat it, so that every field of every ray is set.
     const Segment& segment = segments[std::min<std::size_t>(k, segments.size() - 1)];
     exact[k] = {recentred(segment.from), recentred(segment.to), segment.from_polygon, segment.to_polygon};
@@ -233,8 +236,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     rays.dir_x[k] = direction.x();
     rays.dir_y[k] = direction.y();
     rays.dir_z[k] = direction.z();
-    // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
-    const bool covered = covered_places.any() && covers_end(covered_places, exact[k]);
+    const bool covered = covers_end(covered_places, exact[k]);
     valid[k] = k < segments.size() && !covered && is_finite(rays, k) ? -1 : 0;
   }
   Context context{new_context(), exact, nullptr, covered_places.any() ? &covered_places : nullptr};
@@ -246,7 +248,7 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
     valid[k] = blocked ? 0 : -1;
   }
   if (specular.empty()) return;
-  std::array<Crossed, packet_size> crossed;
+  std::array<Crossed, ShadowPacket::size> crossed;
   context.crossed = crossed.data();
   context.covered_places = nullptr;
   if (!panes.planes.empty()) rtcOccluded16(valid, panes.scene, &context.embree, &rays);
@@ -257,17 +259,13 @@ void Occluder::Tracer::trace_packet(std::span<const Segment> segments, float* ar
 std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
-  // A ray whose end is covered need not be traced, which would meet all that lies in that plane.
   unsigned blocked = 0;
   for (unsigned k = 0; k < ShadowPacket::size; ++k) {
-    const bool covered =
-        tracer_->faces->covered_places.any() && covers_end(tracer_->faces->covered_places, exact_ray(packet, k));
-    const bool is_blocked = covered || !is_finite(rays, k);
+    const bool is_blocked = covers_end(tracer_->faces->covered_places, exact_ray(packet, k)) || !is_finite(rays, k);
     blocked |= static_cast<unsigned>(is_blocked) << k;
     valid[k] = is_blocked ? 0 : -1;
   }
-  Context context{new_context(), nullptr, &packet, nullptr};
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  Context context = context_of(packet);
   rtcOccluded16(valid, tracer_->blockers->scene, &context.embree, &rays);
   for (unsigned k = 0; k < ShadowPacket::size; ++k) blocked |= static_cast<unsigned>(rays.tfar[k] < 0) << k;
   return static_cast<std::uint16_t>(blocked);
@@ -278,10 +276,9 @@ std::array<Crossed, ShadowPacket::size> Occluder::Tracer::crossed_by(const Shado
                                                                      unsigned blocked) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
   alignas(64) int valid[ShadowPacket::size];
-  for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = (blocked >> k & 1) != 0 ? 0 : -1;
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) valid[k] = has_bit(blocked, k) ? 0 : -1;
   std::array<Crossed, ShadowPacket::size> crossed;
-  Context context{new_context(), nullptr, &packet, nullptr, crossed.data()};
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  Context context = context_of(packet, crossed.data());
   if (!panes.planes.empty()) rtcOccluded16(valid, panes.scene, &context.embree, &rays);
   return crossed;
 }
@@ -289,7 +286,7 @@ std::array<Crossed, ShadowPacket::size> Occluder::Tracer::crossed_by(const Shado
 std::array<float, ShadowPacket::size> Occluder::transmittance(const ShadowPacket& packet) const {
   const unsigned blocked = occluded(packet);
   std::array<float, ShadowPacket::size> arriving{};
-  for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = (blocked >> k & 1) != 0 ? 0.0F : 1.0F;
+  for (unsigned k = 0; k < ShadowPacket::size; ++k) arriving[k] = has_bit(blocked, k) ? 0.0F : 1.0F;
   if (tracer_->specular.empty()) return arriving;
   const std::array<Crossed, ShadowPacket::size> crossed = tracer_->crossed_by(packet, blocked);
   for (unsigned k = 0; k < ShadowPacket::size; ++k)
@@ -303,9 +300,9 @@ std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> Occlude
   std::array<Crossed, ShadowPacket::size> crossed = tracer_->crossed_by(packet, blocked);
   std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> found;
   for (unsigned k = 0; k < ShadowPacket::size; ++k) {
-    if ((blocked >> k & 1) != 0) continue;
-    const auto begin = crossed[k].polygons.begin();
-    found[k].emplace(begin, begin + static_cast<std::ptrdiff_t>(crossed[k].count));
+    if (has_bit(blocked, k)) continue;
+    const std::span<PolygonIndex> polygons = crossed[k].all();
+    found[k].emplace(polygons.begin(), polygons.end());
     std::sort(found[k]->begin(), found[k]->end());
   }
   return found;
@@ -314,7 +311,7 @@ std::array<std::optional<std::vector<PolygonIndex>>, ShadowPacket::size> Occlude
 // The first polygon that can block between two points, in recentred coordinates.
 std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, const Point& to) const {
   RTCRayHit query = new_query(from, to - from, 1);
-  const ExactRay exact{from, to, no_polygon, no_polygon};
+  const Segment exact{from, to, no_polygon, no_polygon};
   Context context{new_context(), &exact, nullptr, nullptr};
   rtcIntersect1(blockers->scene, &context.embree, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
@@ -399,8 +396,8 @@ bool Occluder::is_covered_in_part(PolygonIndex polygon, Side side) const {
 std::vector<float> Occluder::transmittance(std::span<const Segment> segments) const {
   std::vector<float> arriving(segments.size(), 1);
   if (!can_occlude()) return arriving;
-  for (std::size_t k = 0; k < segments.size(); k += packet_size) {
-    const std::size_t count = std::min<std::size_t>(packet_size, segments.size() - k);
+  for (std::size_t k = 0; k < segments.size(); k += ShadowPacket::size) {
+    const std::size_t count = std::min<std::size_t>(ShadowPacket::size, segments.size() - k);
     tracer_->trace_packet(segments.subspan(k, count), arriving.data() + k);
   }
   return arriving;
@@ -430,7 +427,7 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   };
   const TriangleScene& triangles = tracer_->faces->triangles;
   const CoveredPlaces& covered_places = tracer_->faces->covered_places;
-  // 1. All rays. The planes of what they meet are on their way from memory meanwhile.
+  // 1. All rays. The planes that they meet are on their way from memory meanwhile.
   std::vector<Found> found(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Ray& ray = rays[k];
@@ -438,7 +435,8 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
     if (ray.direction.isZero(0) || !ray.origin.allFinite() || !ray.direction.allFinite()) continue;
     const Point start = tracer_->recentred(ray.origin);
     RTCRayHit query = new_query(start, ray.direction, std::numeric_limits<float>::infinity());
-    const ExactRay exact{start, start + beyond * ray.direction, ray.from_polygon, no_polygon};
+    // The scene has unit extent: nothing lies so far along a ray. Origins may lie outside.
+    const Segment exact{start, start + 1e6 * ray.direction, ray.from_polygon, no_polygon};
     Context context{new_context(), &exact, nullptr, covered_places.any() ? &covered_places : nullptr};
     context.is_endless = true;
     rtcIntersect1(triangles.scene, &context.embree, &query);
@@ -476,7 +474,7 @@ std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> r
   std::vector<std::optional<Hit>> hits = first_hits(rays);
   if (tracer_->specular.empty()) return hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    for (std::uint64_t meeting = 0; hits[k] && meeting < Crossed::most; ++meeting) {
+    for (std::uint64_t meeting = 0; hits[k] && meeting < most_meetings; ++meeting) {
       const Hit before = *hits[k];
       const auto ray = onward(*this, before, hash({seed, keys.empty() ? k : keys[k], meeting}) * 0x1p-32);
       if (!ray) break;
@@ -487,6 +485,70 @@ std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> r
     }
   }
   return hits;
+}
+
+namespace {
+
+bool has_any(const Scene& scene, const auto& is_such) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
+    if (is_such(p)) return true;
+  return false;
+}
+
+bool has_openings(const Scene& scene) {
+  return has_any(scene, [&](PolygonIndex p) { return is_opening(scene, p); });
+}
+
+bool has_mirrors(const Scene& scene) {
+  return has_any(scene,
+                 [&](PolygonIndex p) { return is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back); });
+}
+
+}  // namespace
+
+// The occluders that are built when they are first asked for.
+struct Tracing::Later {
+  std::once_flag all_once, opaque_once, clear_once;
+  std::shared_ptr<const Occluder> all, opaque, clear;
+};
+
+Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers between_patches, Reflections reflections)
+    : scene_(scene),
+      coverings_(std::move(coverings)),
+      kind_(between_patches),
+      has_openings_(has_openings(scene)),
+      has_specular_faces_(has_openings_ || has_mirrors(scene)),
+      reflections_(reflections),
+      between_patches_(std::make_shared<const Occluder>(scene, between_patches, coverings_, reflections)),
+      later_(std::make_unique<Later>()) {}
+
+Tracing::~Tracing() = default;
+
+const Occluder& Tracing::all_faces() const {
+  std::call_once(later_->all_once, [&] {
+    const auto all = Occluder::Blockers::all;
+    later_->all = kind_ == all ? between_patches_ : std::make_shared<const Occluder>(scene_, all, *between_patches_);
+  });
+  return *later_->all;
+}
+
+std::shared_ptr<const Occluder> Tracing::opaque_faces() const {
+  std::call_once(later_->opaque_once, [&] {
+    if (has_openings_) {
+      later_->opaque = std::make_shared<const Occluder>(scene_, Occluder::Blockers::opaque, coverings_);
+    } else {
+      all_faces();
+      later_->opaque = later_->all;
+    }
+  });
+  return later_->opaque;
+}
+
+std::shared_ptr<const Occluder> Tracing::clear_faces() const {
+  if (!has_openings_) return nullptr;
+  std::call_once(later_->clear_once,
+                 [&] { later_->clear = std::make_shared<const Occluder>(scene_, Occluder::Blockers::clear); });
+  return later_->clear;
 }
 
 }  // namespace patchlight

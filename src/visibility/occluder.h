@@ -17,8 +17,8 @@
 
 namespace patchlight {
 
-/// A shadow ray: the open segment between two points in metres. The two polygons it starts and ends on cannot block it,
-/// as a planar polygon never shades itself.
+/// A shadow ray: the open segment between two points. The two polygons it starts and ends on cannot block it, as a
+/// planar polygon never shades itself.
 struct Segment {
   Point from;
   Point to;
@@ -58,13 +58,12 @@ struct Hit {
 };
 
 /// Decides visibility: every polygon of the scene, unless left out (Blockers), is opaque from both sides, but for clear
-/// ones, which let light through as a SpecularFace does. Immutable and safe to use from
-/// several threads. Rays are traced in single precision, in a scene recentred and scaled to unit
-/// extent in double; a hit counts only if the plane of the polygon separates the two ends of the ray in double, by more
-/// than 1e-9 of the extent at each end. So there is no offset to choose: a surface never shades itself or its neighbour
-/// at a shared edge, and a wall of no thickness is tight up to 1e-7 of the extent, the resolution of single precision,
-/// from its foot. Where polygons lie one on the other in one plane, the lower one is out of sight: a shadow ray from or
-/// to a place of it is blocked.
+/// ones, which let light through as a SpecularFace does. Immutable and safe to use from several threads. Rays are
+/// traced in single precision, in a scene recentered and scaled to unit extent; a hit counts only if the plane of the
+/// polygon separates the two ends of the ray in double precision, by more than 1e-9 of the extent at each end. So a
+/// surface never shades itself or its neighbor at a shared edge, and a wall of no thickness is tight up to 1e-7 of the
+/// extent from its foot. Of polygons that lie one on the other in one plane the lower one is out of sight: a shadow ray
+/// from or to a place of it is blocked.
 class Occluder {
  public:
   /// Which polygons can block a segment.
@@ -77,11 +76,14 @@ class Occluder {
     none          ///< none: as if nothing stood in the way
   };
 
+  /// A ray that has met so many specular polygons ends on the next one.
+  static constexpr std::size_t most_meetings = 64;
+
   explicit Occluder(const Scene& scene, Blockers blockers = Blockers::inside_hull, Coverings coverings = {},
                     Reflections reflections = Reflections::kept);
 
-  /// Of the same scene as another one that rays meet all polygons of, and with its coverings, but with other blockers:
-  /// neither of the two may be `opaque` or `clear`. What both need is there once, and reflections are followed alike.
+  /// Of the same scene as another one, with its faces, coverings and reflections, but with other blockers. Neither of
+  /// the two may be `opaque` or `clear`.
   Occluder(const Scene& scene, Blockers blockers, const Occluder& like);
   ~Occluder();
   Occluder(Occluder&&) noexcept;
@@ -140,17 +142,15 @@ class Occluder {
 
   /// True when one polygon hides the convex hulls of two groups of points from each other: it cuts every segment
   /// between them. May be false when they are hidden by several. The polygons tried are those that a ray between the
-  /// middles meets first from either end, but for those of the groups' own: what is bent by rounding lies before its
-  /// patches in places.
+  /// middles meets first from either end, but for the groups' own, which rounding may have bent.
   bool hides(std::span<const Point> first, std::span<const Point> second, std::span<const PolygonIndex> own = {}) const;
 
   /// The first polygon that each ray meets, if any; with Blockers::opaque or clear only these are met.
   std::vector<std::optional<Hit>> first_hits(std::span<const Ray> rays) const;
 
   /// The same, but a ray goes through a clear polygon with the probability of its transmittance at the ray's angle, and
-  /// is reflected with that of what the polygon, or a mirror, reflects, drawn for each: so in the mean hits count as
-  /// the polygons hold back light. Rays with the same key and seed go on alike; without `keys` each has its place as
-  /// its key.
+  /// is reflected with that of its reflectance: so in the mean hits count as the polygons hold back light. Rays with
+  /// the same key and seed go on alike; without `keys` each has its place as its key.
   std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                   std::span<const std::size_t> keys = {}) const;
 
@@ -170,6 +170,49 @@ class Occluder {
  private:
   struct Tracer;
   std::unique_ptr<Tracer> tracer_;
+};
+
+/// Which polygons of a scene lie over which, and an occluder for each set of blockers. The one between patches is built
+/// at once, the others when they are first asked for. The scene must outlive the object. Safe to use from several
+/// threads.
+class Tracing {
+ public:
+  explicit Tracing(const Scene& scene, Coverings coverings = {},
+                   Occluder::Blockers between_patches = Occluder::Blockers::inside_hull,
+                   Reflections reflections = Reflections::kept);
+  ~Tracing();
+
+  const Coverings& coverings() const { return coverings_; }
+
+  /// Whether light goes on that mirrors and clear faces reflect.
+  Reflections reflections() const { return reflections_; }
+
+  /// True when there are mirrors or clear faces.
+  bool has_specular_faces() const { return has_specular_faces_; }
+
+  /// For rays between points of patches.
+  const Occluder& between_patches() const { return *between_patches_; }
+
+  /// For points that may lie anywhere: every polygon blocks.
+  const Occluder& all_faces() const;
+
+  /// Every polygon that lets no light through blocks, and the others count as not there.
+  std::shared_ptr<const Occluder> opaque_faces() const;
+
+  /// Every clear polygon blocks, and the others count as not there. Null where there are none.
+  std::shared_ptr<const Occluder> clear_faces() const;
+
+ private:
+  struct Later;
+
+  const Scene& scene_;
+  Coverings coverings_;
+  Occluder::Blockers kind_;
+  bool has_openings_;
+  bool has_specular_faces_;
+  Reflections reflections_;
+  std::shared_ptr<const Occluder> between_patches_;
+  std::unique_ptr<Later> later_;
 };
 
 }  // namespace patchlight

@@ -11,7 +11,6 @@
 #include "output/plot/write_plot.h"
 #include "pipeline/problem_of.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

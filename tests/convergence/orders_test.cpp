@@ -7,7 +7,6 @@
 #include "pipeline/problem_of.h"
 #include "support/scenes.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <cmath>

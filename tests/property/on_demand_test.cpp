@@ -6,7 +6,6 @@
 #include "support/meshes.h"
 #include "support/scenes.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <cmath>

@@ -6,7 +6,6 @@
 #include "pipeline/problem_of.h"
 #include "scene/coverings.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <memory>

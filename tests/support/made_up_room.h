@@ -3,7 +3,6 @@
 #include "patchlight/solve/problem.h"
 
 #include "transport/closure.h"
-#include "transport/dense.h"
 
 #include <cmath>
 #include <memory>

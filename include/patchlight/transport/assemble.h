@@ -64,7 +64,7 @@ struct AssemblyOptions {
                   ///< patches grow with them
 };
 
-/// What is raised where the sampling errs too much: rays of a patch, or shadow rays of a pair.
+/// The number to raise where the sampling errs too much: rays of a patch, or shadow rays of a pair.
 constexpr int samples_of(const AssemblyOptions& assembly) {
   return assembly.storage == Storage::rays ? assembly.rays : assembly.samples;
 }
@@ -83,7 +83,7 @@ struct AssemblyCounts {
   AssemblyCounts& operator+=(const AssemblyCounts& other);
 };
 
-/// Exchange areas as computed, before closure, and what is known of their errors.
+/// Exchange areas as computed, before closure, and their known errors.
 struct Assembly {
   ExchangeAreas exchange_areas;
   AssemblyCounts counts;
@@ -91,7 +91,7 @@ struct Assembly {
   EntryErrors entry_errors;  ///< when asked for
 };
 
-/// What is known of some pairs already, from another mesh of the same scene and with the same options.
+/// The entries of some pairs that are known already, from another mesh of the same scene and with the same options.
 struct KnownEntries {
   const Assembly& assembly;
   std::vector<PatchIndex> place;  ///< of each patch of the new mesh: the same patch in the other one, or no_patch

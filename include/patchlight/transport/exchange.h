@@ -15,7 +15,7 @@ namespace patchlight {
 class Occluder;
 struct ClosedExchangeAreas;
 
-/// What passes between the patches of a mesh. Geometry alone decides it.
+/// The exchange between the patches of a mesh. Geometry alone decides it.
 struct Exchange {
   ExchangeAreas exchange_areas{0};
   Eigen::VectorXd area;         ///< m^2, the exposed part of each patch: F_ij = S_ij / A_i

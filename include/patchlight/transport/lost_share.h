@@ -12,7 +12,7 @@ namespace patchlight {
 
 class Occluder;
 
-/// What rays see of each patch's surroundings, all per patch and in [0, 1].
+/// Shares of each patch's surroundings as rays see them, all per patch and in [0, 1].
 struct LostShare {
   Eigen::VectorXd escaped;   ///< share of the exposed part's cosine-weighted hemisphere in which nothing is met
   Eigen::VectorXd at_backs;  ///< share of it in which a side without patches is met
@@ -42,7 +42,7 @@ Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder);
 /// spread over all of it.
 Eigen::ArrayXd over_exposed_part(const PatchMesh& mesh, const LostShare& lost, const Eigen::VectorXd& exposed_area);
 
-/// What each row of form factors should sum up to: 1 - escaped - at_backs.
+/// The sum that each row of form factors should have: 1 - escaped - at_backs.
 Eigen::VectorXd expected_row_sum(const LostShare& lost);
 
 /// Measures the shares with stratified cosine-hemisphere rays that start spread over each patch. A ray that meets
@@ -52,7 +52,7 @@ Eigen::VectorXd expected_row_sum(const LostShare& lost);
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer = {});
 
-/// What is known of some patches already, from another mesh of the same scene.
+/// The shares of some patches that are known already, from another mesh of the same scene.
 struct KnownShares {
   const LostShare& lost;
   const std::vector<PatchIndex>&

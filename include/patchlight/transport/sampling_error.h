@@ -20,7 +20,7 @@ struct AuditedPairs {
   bool operator==(const AuditedPairs&) const = default;
 };
 
-/// What sampling_effort() is at most, 2^(sampling_efforts - 1).
+/// The largest sampling_effort(), 2^(sampling_efforts - 1).
 inline constexpr std::uint32_t most_effort = 32;
 inline constexpr std::size_t sampling_efforts = 6;  ///< how many values it takes
 
@@ -102,7 +102,7 @@ class EntryErrors {
   double standard_error(PatchIndex i, PatchIndex j) const;
   /// Different pairs may be set by different threads at once.
   void set(PatchIndex i, PatchIndex j, EntryKind kind, double standard_error = 0);
-  /// Takes what `other` has for the same two patches.
+  /// Copies the entry of the same two patches in `other`.
   void copy(PatchIndex i, PatchIndex j, const EntryErrors& other, std::array<PatchIndex, 2> there);
   /// A byte for each pair i < j, at j (j - 1) / 2 + i: 0 to 2 is an EntryKind, k from 3 on an estimate with the
   /// standard error sqrt(A_i A_j) 2^((k - 255) / 6).

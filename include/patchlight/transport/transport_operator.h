@@ -18,8 +18,8 @@ class TransportOperator {
   virtual bool is_reciprocal() const { return true; }
 };
 
-/// What a sweep comes to: some patches with their radiosities of now, the irradiance by the radiosities of now, their
-/// own among them, one row each, and the form factors from each of them (rows) to each (columns).
+/// The patches that a sweep comes to: some patches with their radiosities of now, the irradiance by the radiosities of
+/// now, their own among them, one row each, and the form factors from each of them (rows) to each (columns).
 struct SweptPatches {
   PatchRange range;
   Field radiosity;
@@ -30,7 +30,7 @@ struct SweptPatches {
 /// The new radiosities of such patches.
 using Relax = std::function<Field(const SweptPatches& patches)>;
 
-/// What a sweep leaves, and where the next one starts.
+/// The result of a sweep, and the start of the next one.
 struct Sweep {
   Field radiosity;     ///< B after the sweep
   Field irradiance;    ///< F B of the radiosities before it; empty when it is not known

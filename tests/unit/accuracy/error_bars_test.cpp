@@ -8,7 +8,6 @@
 #include "mesh/nested_mesh.h"
 #include "support/scenes.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <cmath>

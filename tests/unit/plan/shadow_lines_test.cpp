@@ -8,7 +8,7 @@
 #include "scene/repair.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"
-#include "visibility/tracing.h"
+#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>

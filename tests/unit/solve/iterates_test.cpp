@@ -1,6 +1,6 @@
 #include "patchlight/solve/solve.h"
 
-#include "transport/dense.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

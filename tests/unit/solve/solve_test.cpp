@@ -4,7 +4,7 @@
 
 #include "support/direct_solution.h"
 #include "support/made_up_room.h"
-#include "transport/dense.h"
+#include "transport/closure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "solve/bounds.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

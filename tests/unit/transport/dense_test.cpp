@@ -1,6 +1,5 @@
-#include "transport/dense.h"
-
 #include "base/parallel.h"
+#include "transport/closure.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -11,7 +11,6 @@
 #include "support/test_room.h"
 #include "support/tiny_scenes.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

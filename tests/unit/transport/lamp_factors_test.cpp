@@ -5,7 +5,7 @@
 #include "form_factor/patch_shape.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
-#include "transport/estimators.h"
+#include "transport/pair_sampler.h"
 #include "visibility/occluder.h"
 
 #include <cmath>

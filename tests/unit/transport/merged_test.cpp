@@ -5,7 +5,6 @@
 #include "support/scenes.h"
 #include "support/tiny_scenes.h"
 #include "transport/closure.h"
-#include "transport/dense.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

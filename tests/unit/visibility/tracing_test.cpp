@@ -1,4 +1,3 @@
-#include "visibility/tracing.h"
 
 #include "patchlight/simulate.h"
 
