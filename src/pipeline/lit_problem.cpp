@@ -1,6 +1,7 @@
 #include "pipeline/lit_problem.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "lighting/mirrored_irradiance.h"
 #include "mesh/small_patches.h"
 #include "pipeline/problem_of.h"
@@ -23,7 +24,7 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
     return direct;
   };
   if (plan.lamp_colour.size() == 0) return trace(run.world->lighting());
-  // All light has the lamps' colour, and nothing changes it on the way: one band tells all.
+  // All light has the lamps' color, and nothing changes it on the way: all bands follow from one.
   const DirectIrradiance found = trace(run.world->lighting_in_one_band());
   const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
   return {in_all(found.irradiance), in_all(found.standard_error)};
@@ -36,14 +37,12 @@ bool takes_few_rays(const Plan& plan, PatchIndex patches) {
 }
 
 std::uint64_t seed_on(const Known& known, std::uint64_t seed) {
-  constexpr std::uint64_t of_later_meshes = 0x2d5;
-  return known.meshes == 0 ? seed : hash({seed, of_later_meshes, known.meshes});
+  return known.meshes == 0 ? seed : hash({seed, stream::later_meshes, known.meshes});
 }
 
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
-  constexpr int over_mirrors_of_many = 16;
   LightingOptions options{.seed = plan.assembly.seed};
-  if (takes_few_rays(plan, mesh.size())) options.mirrored_samples = over_mirrors_of_many;
+  if (takes_few_rays(plan, mesh.size())) options.mirrored_samples = 16;
   return options;
 }
 
@@ -53,7 +52,7 @@ namespace {
 DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                                           LightingOptions options) {
   if (!known.light) return direct_irradiance_as_planned(run, plan, mesh, options);
-  // 1. What is not known, on a mesh of its own, by rays that have told nothing of how many it takes.
+  // 1. The light that is not known, on a mesh of its own, by rays that have not decided how many it takes.
   std::vector<std::uint8_t> is_known;
   std::vector<std::uint8_t> doublings;
   const std::vector<std::uint8_t>& more = known.more_rays.to_lights;
@@ -68,12 +67,12 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
   options.seed = seed_on(known, options.seed);
   const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
 
-  // 2. With what is.
-  const auto joined = [&](const Field& before, const Field& anew) {
-    Field all(mesh.size(), anew.cols());
+  // 2. With the light that is.
+  const auto joined = [&](const Field& before, const Field& now) {
+    Field all(mesh.size(), now.cols());
     Eigen::Index next = 0;
     for (PatchIndex i = 0; i < mesh.size(); ++i)
-      all.row(i) = is_known[i] != 0 ? before.row(known.light_place[i]) : anew.row(next++);
+      all.row(i) = is_known[i] != 0 ? before.row(known.light_place[i]) : now.row(next++);
     return all;
   };
   return {joined(known.light->irradiance, found.irradiance), joined(known.light->standard_error, found.standard_error)};

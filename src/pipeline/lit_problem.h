@@ -12,24 +12,25 @@
 
 namespace patchlight {
 
-/// What is solved on a mesh: its materials, and the light of luminaires, sun and sky where it first arrives.
+/// The problem on a mesh: its materials, and the light of luminaires, sun and sky where it first arrives.
 struct LitProblem {
   RadiosityProblem problem;
   Field direct_standard_error;               ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   std::vector<std::uint8_t> doublings = {};  ///< MoreRays::to_lights
 };
 
-/// Above so many patches fewer rays are taken of each: those around take the noise away.
+/// Above these numbers of patches fewer rays are taken of each: smoothing over those around reduces the noise.
 inline constexpr PatchIndex many_patches = 20'000;
+inline constexpr PatchIndex very_many_patches = 100'000;
 
 /// True for many patches, and on the way to an accuracy by rows of rays, where those that need more get them by
 /// MoreRays.
 bool takes_few_rays(const Plan& plan, PatchIndex patches);
 
-/// What chooses the rays on a mesh: those that have told how many it takes are not used again.
+/// The random seed on a mesh. Rays that have decided how many it takes are not used again, which would bias results.
 std::uint64_t seed_on(const Known& known, std::uint64_t seed);
 
-/// How light of luminaires, sun and sky is looked for on these patches.
+/// The rays for the light of luminaires, sun and sky on these patches.
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 
 /// `exposed_area` as problem_of() takes it. Where one band stands for all, direct light is found once. \throws
@@ -37,8 +38,8 @@ LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                        const Known& known = {});
 
-/// Light that was found as means over all of each patch but what other polygons lie over, as means over what is exposed
-/// of it, m^2; standard errors no less than those around, each by as many rays. Empty where there is no such light.
+/// Converts light averaged over each patch but for the part under other polygons into averages over its exposed area,
+/// m^2; standard errors no less than those around, each by as many rays. Empty where there is no such light.
 DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
                                    const Eigen::VectorXd& exposed_area, std::span<const std::uint8_t> doublings = {});
 

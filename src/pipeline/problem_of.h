@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/base/field.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
@@ -8,6 +9,9 @@
 #include "scene/specular_faces.h"
 
 namespace patchlight {
+
+/// The reflectances of patches with those that lie in a picture replaced by the mean of the picture over the patch.
+Field with_textures(Field reflectance, const Scene& scene, const PatchMesh& mesh);
 
 /// The materials of the scene on the patches: lamps emit from their front sides, and from their back sides if asked. A
 /// back side with a material of its own is a front side in this. A clear patch, or a mirror, counts as a sheet with

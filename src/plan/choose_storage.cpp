@@ -32,14 +32,13 @@ Plan by_rays(Plan plan) {
 
 namespace {
 
-// Rays of a patch where pairs would be taken otherwise: about as accurate.
-constexpr int rays_replacing_pairs = 256;
-constexpr std::size_t most_patches_with_more_rays = 40000;
+// Pairs of more patches take tens of seconds, and rows of rays one or two: docs/concepts/pairs-and-rays.md.
+constexpr std::size_t most_patches_in_pairs = 10000;
 
-// Not on the way to an accuracy: there faces are cut where it matters, and the noise of rays would limit.
+// Sides have few patches each: the error by the size of patches is larger than the noise of rays, which take much less
+// time than pairs. Not on the way to an accuracy, where faces are cut as it matters, and the noise of rays would limit.
 bool has_coarse_sides(const StoredLight& light, const Request& request) {
-  return light.patches >= least_coarse_patches && light.patches < patches_of_coarse_sides * light.sides &&
-         !refines(request.accuracy);
+  return light.patches >= 1000 && light.patches < 32 * light.sides && !refines(request.accuracy);
 }
 
 std::string reason_for_rays(const StoredLight& light, const Request& request, double bytes) {
@@ -52,18 +51,12 @@ std::string reason_for_rays(const StoredLight& light, const Request& request, do
          (fits ? " and more time" : ", and " + gigabytes(usable_memory(request.resources)) + " is allowed");
 }
 
-}  // namespace
-
-namespace {
-
-// Error bars of so many patches in pairs take two fifths of the run; of twice as many, three fifths. Standard errors of
-// sensors follow from them, and are far too small behind slits and louvres without: then more patches have bars as
+// Error bars of 5,000 patches in pairs take two fifths of the run; of twice as many, three fifths. Standard errors of
+// sensors follow from them, and are far too small behind slits and louvers without: then more patches have bars as
 // well.
-constexpr std::size_t most_patches_with_cheap_bars = 5000;
-
 ChosenStorage with_cheap_bars(ChosenStorage chosen, const Given& given, const StoredLight& light) {
   const bool is_cheap = chosen.request.assembly.storage == Storage::tiles && light.is_reflected &&
-                        (light.has_sensors || light.patches <= most_patches_with_cheap_bars);
+                        (light.has_sensors || light.patches <= 5000);
   if (!chosen.request.accuracy.cheap_error_bars || !is_cheap || part_without_error_bars(chosen.request, given))
     return chosen;
   AccuracyOptions with_bars = chosen.request.accuracy;
@@ -93,9 +86,9 @@ ChosenStorage choose_storage(const Request& request, const Given& given, const S
   chosen.request = by_rays(std::move(chosen.request));
   chosen.request.accuracy.error_bars = light.is_reflected;
   const bool replaces_pairs = light.patches <= most_patches_in_pairs && is_coarse;
-  const bool is_small = light.patches <= most_patches_with_more_rays;
-  if (replaces_pairs || ((light.is_mirrored || light.has_goal) && is_small))
-    chosen.request.assembly.rays = rays_replacing_pairs;
+  // About as accurate as pairs.
+  if (replaces_pairs || ((light.is_mirrored || light.has_goal) && light.patches <= 40000))
+    chosen.request.assembly.rays = 256;
   chosen.notes = {{DiagnosticCode::rows_of_rays, "form factors are sampled by rays (assembly.storage=rays), " +
                                                      reason_for_rays(light, request, bytes) +
                                                      "\nhint: assembly.storage=tiles computes all pairs instead"}};

@@ -6,16 +6,6 @@
 
 namespace patchlight {
 
-/// Pairs are kept for so many patches at most where it is left to the plan: more take tens of seconds, and rows of rays
-/// one or two, docs/concepts/pairs-and-rays.md.
-inline constexpr std::size_t most_patches_in_pairs = 10000;
-
-/// From so many patches on rows of rays are taken where the sides of the polygons have but few patches each, fewer than
-/// patches_of_coarse_sides in the mean: what the size of patches errs is then larger than the noise of rays, which take
-/// much less time than pairs, docs/concepts/pairs-and-rays.md.
-inline constexpr std::size_t least_coarse_patches = 1000;
-inline constexpr std::size_t patches_of_coarse_sides = 32;
-
 /// The same by rows of rays; Solver::cg, which takes a symmetric matrix, becomes gmres.
 Request by_rays(Request request);
 
@@ -39,8 +29,8 @@ struct StoredLight {
 };
 
 /// Storage::automatic becomes rows of rays where light is mirrored, where there is a goal, where patches are more than
-/// most_patches_in_pairs or few on each side, and where pairs do not fit into the memory. It becomes tiles where there
-/// is a part_that_takes_pairs(), or no light is reflected in either way. Another storage stays, except for rays where
+/// 10,000 or few on each side, and where pairs do not fit into the memory. It becomes tiles where there is a
+/// part_that_takes_pairs(), or no light is reflected in either way. Another storage stays, except for rays where
 /// error bars are requested of light that is not reflected: these become tiles. Rows of rays have error bars where
 /// light is reflected, and with these nested meshes. Small meshes that have rays because of mirrors or of few patches a
 /// side get more of them. Pairs have error bars where AccuracyOptions::cheap_error_bars allows them.

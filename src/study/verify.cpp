@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "pipeline/relative_errors.h"
+#include "pipeline/radiosity_errors.h"
 #include "plan/planned_scene.h"
 #include "report/room_light.h"
 #include "scene/triangulate.h"

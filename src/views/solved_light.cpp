@@ -4,7 +4,7 @@
 
 #include "light/photometry.h"
 #include "lighting/lamp_faces.h"
-#include "pipeline/lamps_apart.h"
+#include "pipeline/exchange_and_light.h"
 #include "pipeline/world.h"
 #include "visibility/occluder.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/conserved_flux.h"
+#include "pipeline/solve_with_rays.h"
 
 #include "base/vectors.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/textured_patches.h"
+#include "pipeline/problem_of.h"
 
 #include "patchlight/simulate.h"
 

@@ -1,4 +1,4 @@
-#include "plan/left_out_sides.h"
+#include "plan/notes.h"
 
 #include "patchlight/plan/plan.h"
 

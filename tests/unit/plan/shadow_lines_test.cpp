@@ -1,4 +1,4 @@
-#include "plan/shadow_lines.h"
+#include "plan/planned_lines.h"
 
 #include "patchlight/plan/plan.h"
 
