@@ -4,11 +4,10 @@
 
 #include "base/parallel.h"
 #include "pipeline/light_colours.h"
-#include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
-#include "pipeline/run.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/radiosity_errors.h"
+#include "pipeline/run.h"
 #include "pipeline/search.h"
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"

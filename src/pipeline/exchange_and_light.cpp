@@ -6,8 +6,6 @@
 #include "base/vectors.h"
 #include "lighting/lamp_faces.h"
 #include "lighting/mirrored_irradiance.h"
-#include "pipeline/lit_problem.h"
-#include "pipeline/problem_of.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "transport/ray_rows.h"
@@ -48,23 +46,6 @@ std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const 
   std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
   return lamps;
 }
-
-}  // namespace
-
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                  const Tracing& tracing) {
-  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_faces();
-  std::vector<LampSide> apart;
-  std::size_t pieces = 0;
-  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
-    pieces += piece_count(scene, lamp.side);
-    if (pieces > (mirrors ? 64U : 16U)) break;
-    apart.push_back(lamp.side);
-  }
-  return apart;
-}
-
-namespace {
 
 // The factors of lamps, the patches of a side each, by the clear faces of the run.
 LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
@@ -166,33 +147,10 @@ int times_for_all(const Known& known) {
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(mean)));
 }
 
-Plan with_rays_to_lamps(Plan plan, const Known& known) {
-  plan.assembly.rays *= times_for_all(known);
-  return plan;
-}
-
 // H = F_lamps E_lamps for factors of one value per patch and lamp.
 Field irradiance_by(const LampValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
 }
-
-}  // namespace
-
-Field emitted_in_rows(const RayLight& light) {
-  Field exitance = light.lit.problem.exitance;
-  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
-    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
-  return exitance;
-}
-
-Field direct_of(const RayLight& light) {
-  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
-  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
-    if (more->size() > 0) direct += *more;
-  return direct;
-}
-
-namespace {
 
 // The light of the lamps apart, as means over whole patches.
 RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
@@ -257,14 +215,47 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
                        "'); only colors may change\nhint: compute them again: patchlight form-factors MODEL -o FOLDER");
 }
 
+Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
+  return all.size() > 0 ? Field(all(Eigen::all, bands)) : Field(all.rows(), 0);
+}
+
 }  // namespace
+
+std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                  const Tracing& tracing) {
+  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_faces();
+  std::vector<LampSide> apart;
+  std::size_t pieces = 0;
+  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
+    pieces += piece_count(scene, lamp.side);
+    if (pieces > (mirrors ? 64U : 16U)) break;
+    apart.push_back(lamp.side);
+  }
+  return apart;
+}
+
+Field emitted_in_rows(const RayLight& light) {
+  Field exitance = light.lit.problem.exitance;
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
+    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
+  return exitance;
+}
+
+Field direct_of(const RayLight& light) {
+  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
+  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
+    if (more->size() > 0) direct += *more;
+  return direct;
+}
 
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit = lit_problem(run, plan, mesh, area, known);
+  Plan to_lamps = plan;
+  to_lamps.assembly.rays *= times_for_all(known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_lamps(run, with_rays_to_lamps(plan, known), mesh, lit.problem);
+                                  : traced_lamps(run, to_lamps, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   // Its error counts with the rows.
   LightingOptions over_mirrors = lighting_options(plan, mesh);
@@ -286,14 +277,6 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   light.rays_per_patch = static_cast<double>(exchange.rows.rays) / mesh.size();
   return {std::move(exchange), std::move(light)};
 }
-
-namespace {
-
-Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
-  return all.size() > 0 ? Field(all(Eigen::all, bands)) : Field(all.rows(), 0);
-}
-
-}  // namespace
 
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
                            const Plan& plan, const PatchMesh& mesh) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lighting/direct_irradiance.h"
-#include "pipeline/lit_problem.h"
+#include "pipeline/problem_of.h"
 #include "pipeline/run.h"
 #include "transport/lamp_factors.h"
 #include "transport/ray_transport.h"

@@ -1,12 +1,11 @@
 #include "pipeline/expected_cost.h"
 
-#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/direct_irradiance.h"
-#include "pipeline/lit_problem.h"
+#include "pipeline/problem_of.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "transport/pair_sampler.h"

@@ -3,7 +3,6 @@
 #include "patchlight/transport/lost_share.h"
 
 #include "mesh/mesher.h"
-#include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"

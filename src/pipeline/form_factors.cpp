@@ -7,11 +7,9 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/run.h"
 #include "plan/check_request.h"
-#include "plan/choose_storage.h"
 #include "plan/memory.h"
 #include "transport/closure.h"
 #include "transport/ray_rows.h"
-#include "transport/ray_transport.h"
 
 #include <memory>
 #include <utility>

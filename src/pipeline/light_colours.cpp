@@ -2,7 +2,6 @@
 
 #include "accuracy/spaces.h"
 #include "light/photometry.h"
-#include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/mesh_transport.h"
 #include "pipeline/problem_of.h"
@@ -11,10 +10,8 @@
 #include "plan/planned_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

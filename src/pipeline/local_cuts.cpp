@@ -1,10 +1,8 @@
 #include "pipeline/local_cuts.h"
 
-#include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/rounded.h"
 #include "base/sampling.h"
-#include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/memory.h"
@@ -16,7 +14,6 @@
 #include <cstdint>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -44,34 +41,6 @@ double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double 
   const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - noise * noise));
   return allowed(accuracy, 0.6, std::hypot(step.mesh, step.solver, beside));
 }
-
-}  // namespace
-
-int most_samples(const Plan& plan) { return plan.assembly.storage == Storage::rays ? 4096 : 256; }
-
-double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
-
-double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  const double lights = solved.light_bar;
-  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
-  return error_margin * std::hypot(step.mesh, lights) /
-         allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
-}
-
-double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
-  return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
-}
-
-int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy, const Plan& plan) {
-  const int samples = samples_of(plan.assembly);
-  if (plan.assembly.storage != solved.simulation.plan.assembly.storage) return samples;
-  if (mesh_factor(solved, step, accuracy) > 1.5) return samples;
-  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
-  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
-  return factor > error_margin ? next_samples(plan, factor) : samples;
-}
-
-namespace {
 
 // The share of an error that the rays of rows, and those to lights, may have, in quadrature.
 constexpr double share_to_rays = 0.5;
@@ -233,7 +202,66 @@ double allowed_square(double error, double share, double others) {
   return std::pow(allowed(error, share, std::sqrt(others)), 2);
 }
 
+// No second mesh reduces a smaller error.
+constexpr double usual_error = 0.02;
+
+// The goal of a second mesh. Rays of rows cost less than those to sun and sky, which are more.
+constexpr LocalGoal goal_of_second_mesh{
+    .error = usual_error / error_margin, .new_patches = 0.25, .more_to_lights = 0.5, .more_of_rows = 1.5};
+
+std::string errors_of_first(const AccuracyStep& errors) {
+  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
+         " %: ";
+}
+
+Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
+  const auto is_doubled = [&](std::size_t i) {
+    const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
+    return any(next.known.more_rays.to_lights) || any(next.known.more_rays.of_rows);
+  };
+  const std::size_t cut = errors.patches - number_kept(next.known.place);
+  std::size_t doubled = 0;
+  for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
+  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
+  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "on a second one " + cuts +
+                                            (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
+                                            "; accuracy.local_cuts=false stays with the first"}};
+}
+
+Diagnostics notes_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
+  const std::size_t patches = cuts.mesh.mesh.patches.size();
+  const double bytes = memory_of_next_mesh(patches, times_the_rays(cuts), plan);
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
+                                            " patches, would err less and is not made, as it " +
+                                            memory_refused(bytes, plan.resources)}};
+}
+
 }  // namespace
+
+int most_samples(const Plan& plan) { return plan.assembly.storage == Storage::rays ? 4096 : 256; }
+
+double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
+
+double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double lights = solved.light_bar;
+  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
+  return error_margin * std::hypot(step.mesh, lights) /
+         allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
+}
+
+double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
+}
+
+int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy, const Plan& plan) {
+  const int samples = samples_of(plan.assembly);
+  if (plan.assembly.storage != solved.simulation.plan.assembly.storage) return samples;
+  if (mesh_factor(solved, step, accuracy) > 1.5) return samples;
+  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
+  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
+  return factor > error_margin ? next_samples(plan, factor) : samples;
+}
 
 LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const LocalGoal& goal) {
   const double by_lights = solved.light_bar * solved.light_bar;
@@ -284,45 +312,6 @@ MeshToSolve mesh_with(LocalCuts cuts, SolvedMesh& solved) {
   return next;
 }
 
-namespace {
-
-// No second mesh reduces a smaller error.
-constexpr double usual_error = 0.02;
-
-// The goal of a second mesh. Rays of rows cost less than those to sun and sky, which are more.
-constexpr LocalGoal usual{
-    .error = usual_error / error_margin, .new_patches = 0.25, .more_to_lights = 0.5, .more_of_rows = 1.5};
-
-std::string errors_of_first(const AccuracyStep& errors) {
-  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
-         " %: ";
-}
-
-Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
-  const auto is_doubled = [&](std::size_t i) {
-    const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
-    return any(next.known.more_rays.to_lights) || any(next.known.more_rays.of_rows);
-  };
-  const std::size_t cut = errors.patches - number_kept(next.known.place);
-  std::size_t doubled = 0;
-  for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
-  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
-  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
-  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "on a second one " + cuts +
-                                            (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
-                                            "; accuracy.local_cuts=false stays with the first"}};
-}
-
-Diagnostics notes_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
-  const std::size_t patches = cuts.mesh.mesh.patches.size();
-  const double bytes = memory_of_next_mesh(patches, times_the_rays(cuts), plan);
-  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
-                                            " patches, would err less and is not made, as it " +
-                                            memory_refused(bytes, plan.resources)}};
-}
-
-}  // namespace
-
 bool makes_second_mesh(const Plan& plan, PatchIndex patches) {
   const AccuracyOptions& accuracy = plan.accuracy;
   return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays &&
@@ -339,7 +328,7 @@ bool cuts_locally(const Run& run, PatchIndex patches) {
 
 SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
   if (!makes_second_mesh(run, errors.patches) || !(errors.total > usual_error)) return {};
-  LocalCuts cuts = local_cuts(solved, errors, usual);
+  LocalCuts cuts = local_cuts(solved, errors, goal_of_second_mesh);
   // It pays where it leaves less than 0.7 of the error.
   if (!(cuts.gain > (1 - 0.7 * 0.7) * errors.total * errors.total)) return {};
   const Plan& plan = solved.simulation.plan;

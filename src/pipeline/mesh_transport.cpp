@@ -8,11 +8,7 @@
 #include "transport/ray_rows.h"
 #include "visibility/occluder.h"
 
-#include <algorithm>
-#include <cstdint>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

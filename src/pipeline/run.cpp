@@ -3,19 +3,10 @@
 #include "lighting/mirrored_irradiance.h"
 #include "plan/notes.h"
 
-#include <algorithm>
 #include <set>
 #include <sstream>
 
 namespace patchlight {
-
-Given given_by(const Steps& with) {
-  return {.form_factors = static_cast<bool>(with.exchange),
-          .ray_rows = static_cast<bool>(with.ray_exchange),
-          .mesh = static_cast<bool>(with.mesh),
-          .solver = static_cast<bool>(with.solve)};
-}
-
 namespace {
 
 // Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
@@ -34,6 +25,13 @@ Diagnostics notes_on_chains(const World& world) {
 }
 
 }  // namespace
+
+Given given_by(const Steps& with) {
+  return {.form_factors = static_cast<bool>(with.exchange),
+          .ray_rows = static_cast<bool>(with.ray_exchange),
+          .mesh = static_cast<bool>(with.mesh),
+          .solver = static_cast<bool>(with.solve)};
+}
 
 Diagnostics notes_on_run(const World& world, const Plan& plan) {
   const Scene& scene = world.scene();

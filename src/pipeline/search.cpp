@@ -11,10 +11,8 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/radiosity_errors.h"
-#include "pipeline/run.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
-#include "plan/choose_storage.h"
 #include "plan/memory.h"
 
 #include <algorithm>
@@ -22,7 +20,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -67,10 +64,6 @@ Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
   return plan;
 }
 
-bool fits(const LocalCuts& cuts, const Plan& plan) {
-  return memory_needed(cuts.light_place.size(), with_rays_of(cuts, plan)) <= usable_memory(plan.resources);
-}
-
 // Cuts that leave a relative error, by the errors of the mesh before, which allow a limited growth at once, and no more
 // than time and memory do: the last mesh could be solved so many `times` in the time that is left.
 std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, const AccuracyStep& step, double error, double times) {
@@ -79,7 +72,8 @@ std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, const AccuracyS
   for (; growth > 0.1; growth /= 2) {
     const double more_rays = std::min(2.0, growth);
     LocalCuts cuts = local_cuts(solved, step, {error / error_margin, growth, more_rays, more_rays, true});
-    if (!cuts.changes || fits(cuts, solved.simulation.plan)) return cuts;
+    const Plan plan = with_rays_of(cuts, solved.simulation.plan);
+    if (!cuts.changes || memory_needed(cuts.light_place.size(), plan) <= usable_memory(plan.resources)) return cuts;
   }
   return std::nullopt;
 }
@@ -113,11 +107,6 @@ Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
     if ((problem.exitance.row(i) > 0).any()) noise[solved.mesh.parent[i]] = 0;
   }
   return noise;
-}
-
-std::vector<std::uint8_t> either(std::vector<std::uint8_t> marks, const std::vector<std::uint8_t>& others) {
-  for (std::size_t k = 0; k < marks.size(); ++k) marks[k] |= others[k];
-  return marks;
 }
 
 std::size_t count(const std::vector<std::uint8_t>& marks) {
@@ -250,9 +239,9 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   const std::vector<std::uint8_t> noisy =
       parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= 0.25 * static_cast<double>(parents);
-  if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples(plan)))
-    return {either(std::move(cut), noisy), samples};
-  return {std::move(cut), more};
+  if (count(noisy) == 0 || !(are_few || by_time || step.samples >= most_samples(plan))) return {std::move(cut), more};
+  for (std::size_t k = 0; k < cut.size(); ++k) cut[k] |= noisy[k];
+  return {std::move(cut), samples};
 }
 
 bool Search::may_go_by_rays(const Plan& plan) const {

@@ -12,10 +12,8 @@
 #include "transport/smoothing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -66,89 +64,6 @@ std::array<Field, 2> gathered_by_halves(const RaysWithPockets& transport, const 
 
 Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + halves[1]); }
 
-}  // namespace
-
-ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem& problem,
-                                const Eigen::VectorXd& row_sum) {
-  const Eigen::VectorXd& area = problem.area;
-  // 1. Connected components.
-  const PatchIndex size = rays.size();
-  DisjointSets components(size);
-  for (const std::size_t half : {0U, 1U}) join_patches(components, rays.rows(half));
-  const Scattering& scattering = problem.scattering;
-  if (!scattering.is_diagonal())
-    for (PatchIndex i = 0; i < size; ++i) components.join(i, scattering.other_side[i]);
-
-  // 2. The area and the loss of each, by its root.
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
-  Eigen::VectorXd lost = Eigen::VectorXd::Zero(size);
-  for (PatchIndex i = 0; i < size; ++i) {
-    all[components.root(i)] += area[i];
-    lost[components.root(i)] += area[i] * (1 - row_sum[i]);
-  }
-
-  // 3. Number those that are closed. Patches that reach into solids lose some tenths of a percent at their backs, and
-  //    rooms with a window some percent.
-  ClosedSpaces found;
-  std::map<PatchIndex, std::uint32_t> number;
-  for (PatchIndex i = 0; i < size; ++i) {
-    const PatchIndex root = components.root(i);
-    const bool is_closed = all[root] > 0 && lost[root] <= 0.02 * all[root];
-    found.space_of.push_back(is_closed
-                                 ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
-                                 : ClosedSpaces::open);
-  }
-  found.count = static_cast<Eigen::Index>(number.size());
-  return found;
-}
-
-Field ConservedFlux::completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const {
-  if (spaces.count == 0) return gathered;
-  const Field watts = missing(*this, gathered, radiosity, area);
-  gathered += times_of_space(spaces, shape, watts);
-  return gathered;
-}
-
-ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
-                                   const Eigen::VectorXd& row_sum, const Observer& observer) {
-  // 1. The missing flux of each closed space, and its distribution.
-  const Eigen::VectorXd& area = problem.area;
-  std::array<Field, 2> halves = gathered_by_halves(transport, solution.radiosity);
-  const Field gathered = mean_of(halves);
-  ConservedFlux flux{find_closed_spaces(transport.rays(), problem, row_sum), area.cwiseProduct(row_sum), {}};
-  const auto unchanged = [&] {
-    flux.shape = Field::Zero(gathered.rows(), gathered.cols());
-    return ConservingSolution{std::move(solution), std::move(flux), std::move(halves)};
-  };
-  if (flux.spaces.count == 0 || !solution.converged) return unchanged();
-  const Field arriving = sum_by_space(flux.spaces, gathered, area);
-  flux.shape = times_of_space(flux.spaces, gathered, (arriving > 0).select(arriving.inverse(), 0.0));
-  const Field lacking = missing(flux, gathered, solution.radiosity, area);
-
-  // 2. The response to a watt in each space, B' = R shape + R F B', which lacks some flux again. Closed spaces exchange
-  //    no light, so that one solution has the responses of all.
-  const RadiosityProblem of_a_watt{problem.scattering, problem.scattering.reflect(flux.shape), area};
-  const SolverOptions loosely{.solver = Solver::gmres,
-                              .relative_error = error_of_response,
-                              .max_iterations = 100,  // white faces that trap light leave the flux uncorrected
-                              .largest_row_sum = std::numeric_limits<double>::infinity(),
-                              .patch_bounds = false};
-  const Solution response = solve(transport, of_a_watt, loosely, observer);
-  const std::array<Field, 2> by_a_watt = gathered_by_halves(transport, response.radiosity);
-  const Field lacking_again = missing(flux, mean_of(by_a_watt), response.radiosity, area);
-  if (!response.converged || (lacking_again > 0.5).any()) return unchanged();
-
-  // 3. The corrected solution.
-  const Field watts = lacking / (1 - lacking_again);
-  const Field added = times_of_space(flux.spaces, response.radiosity, watts);
-  solution.radiosity += added;
-  for (std::size_t half = 0; half < 2; ++half) halves[half] += times_of_space(flux.spaces, by_a_watt[half], watts);
-  if (solution.error.size() > 0) solution.error += error_of_response * added.abs();
-  return {std::move(solution), std::move(flux), std::move(halves)};
-}
-
-namespace {
-
 // The light of a RayLight and its errors, some of it without a value.
 std::array<const Field*, 7> fields_of(const RayLight& light) {
   return {&light.lit.problem.exitance,     &light.by_lamps[0],           &light.by_lamps[1],
@@ -184,25 +99,6 @@ SolvedBands needed_bands(const RayLight& light, const SolverOptions& options) {
 }
 
 Field squares_in(const SolvedBands& bands, const Field& error) { return reduced(error, bands).square(); }
-
-}  // namespace
-
-NeededLight needed_light(const RayLight& light, const SolverOptions& options) {
-  const RadiosityProblem& all = light.lit.problem;
-  NeededLight needed{.bands = needed_bands(light, options), .problem = {}, .of_lamps = {}, .of_others = {}};
-  const SolvedBands& bands = needed.bands;
-  needed.problem = {of_bands(all.scattering, bands.solved), reduced(emitted_in_rows(light), bands), all.area,
-                    reduced(direct_of(light), bands)};
-  needed.of_lamps = squares_in(bands, light.lamp_standard_error);
-  for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
-    if (error->size() == 0) continue;
-    if (needed.of_others.size() == 0) needed.of_others = Field::Zero(error->rows(), needed.of_lamps.cols());
-    needed.of_others += squares_in(bands, *error);
-  }
-  return needed;
-}
-
-namespace {
 
 // B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
 ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
@@ -381,6 +277,100 @@ GatheredLight gathered_light(const Gather& by, const SolvedInBands& solved, std:
 }
 
 }  // namespace
+
+ClosedSpaces find_closed_spaces(const RayTransport& rays, const RadiosityProblem& problem,
+                                const Eigen::VectorXd& row_sum) {
+  const Eigen::VectorXd& area = problem.area;
+  // 1. Connected components.
+  const PatchIndex size = rays.size();
+  DisjointSets components(size);
+  for (const std::size_t half : {0U, 1U}) join_patches(components, rays.rows(half));
+  const Scattering& scattering = problem.scattering;
+  if (!scattering.is_diagonal())
+    for (PatchIndex i = 0; i < size; ++i) components.join(i, scattering.other_side[i]);
+
+  // 2. The area and the loss of each, by its root.
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);
+  Eigen::VectorXd lost = Eigen::VectorXd::Zero(size);
+  for (PatchIndex i = 0; i < size; ++i) {
+    all[components.root(i)] += area[i];
+    lost[components.root(i)] += area[i] * (1 - row_sum[i]);
+  }
+
+  // 3. Number those that are closed. Patches that reach into solids lose some tenths of a percent at their backs, and
+  //    rooms with a window some percent.
+  ClosedSpaces found;
+  std::map<PatchIndex, std::uint32_t> number;
+  for (PatchIndex i = 0; i < size; ++i) {
+    const PatchIndex root = components.root(i);
+    const bool is_closed = all[root] > 0 && lost[root] <= 0.02 * all[root];
+    found.space_of.push_back(is_closed
+                                 ? number.try_emplace(root, static_cast<std::uint32_t>(number.size())).first->second
+                                 : ClosedSpaces::open);
+  }
+  found.count = static_cast<Eigen::Index>(number.size());
+  return found;
+}
+
+Field ConservedFlux::completed(Field gathered, const Field& radiosity, const Eigen::VectorXd& area) const {
+  if (spaces.count == 0) return gathered;
+  const Field watts = missing(*this, gathered, radiosity, area);
+  gathered += times_of_space(spaces, shape, watts);
+  return gathered;
+}
+
+ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
+                                   const Eigen::VectorXd& row_sum, const Observer& observer) {
+  // 1. The missing flux of each closed space, and its distribution.
+  const Eigen::VectorXd& area = problem.area;
+  std::array<Field, 2> halves = gathered_by_halves(transport, solution.radiosity);
+  const Field gathered = mean_of(halves);
+  ConservedFlux flux{find_closed_spaces(transport.rays(), problem, row_sum), area.cwiseProduct(row_sum), {}};
+  const auto unchanged = [&] {
+    flux.shape = Field::Zero(gathered.rows(), gathered.cols());
+    return ConservingSolution{std::move(solution), std::move(flux), std::move(halves)};
+  };
+  if (flux.spaces.count == 0 || !solution.converged) return unchanged();
+  const Field arriving = sum_by_space(flux.spaces, gathered, area);
+  flux.shape = times_of_space(flux.spaces, gathered, (arriving > 0).select(arriving.inverse(), 0.0));
+  const Field lacking = missing(flux, gathered, solution.radiosity, area);
+
+  // 2. The response to a watt in each space, B' = R shape + R F B', which lacks some flux again. Closed spaces exchange
+  //    no light, so that one solution has the responses of all.
+  const RadiosityProblem of_a_watt{problem.scattering, problem.scattering.reflect(flux.shape), area};
+  const SolverOptions loosely{.solver = Solver::gmres,
+                              .relative_error = error_of_response,
+                              .max_iterations = 100,  // white faces that trap light leave the flux uncorrected
+                              .largest_row_sum = std::numeric_limits<double>::infinity(),
+                              .patch_bounds = false};
+  const Solution response = solve(transport, of_a_watt, loosely, observer);
+  const std::array<Field, 2> by_a_watt = gathered_by_halves(transport, response.radiosity);
+  const Field lacking_again = missing(flux, mean_of(by_a_watt), response.radiosity, area);
+  if (!response.converged || (lacking_again > 0.5).any()) return unchanged();
+
+  // 3. The corrected solution.
+  const Field watts = lacking / (1 - lacking_again);
+  const Field added = times_of_space(flux.spaces, response.radiosity, watts);
+  solution.radiosity += added;
+  for (std::size_t half = 0; half < 2; ++half) halves[half] += times_of_space(flux.spaces, by_a_watt[half], watts);
+  if (solution.error.size() > 0) solution.error += error_of_response * added.abs();
+  return {std::move(solution), std::move(flux), std::move(halves)};
+}
+
+NeededLight needed_light(const RayLight& light, const SolverOptions& options) {
+  const RadiosityProblem& all = light.lit.problem;
+  NeededLight needed{.bands = needed_bands(light, options), .problem = {}, .of_lamps = {}, .of_others = {}};
+  const SolvedBands& bands = needed.bands;
+  needed.problem = {of_bands(all.scattering, bands.solved), reduced(emitted_in_rows(light), bands), all.area,
+                    reduced(direct_of(light), bands)};
+  needed.of_lamps = squares_in(bands, light.lamp_standard_error);
+  for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
+    if (error->size() == 0) continue;
+    if (needed.of_others.size() == 0) needed.of_others = Field::Zero(error->rows(), needed.of_lamps.cols());
+    needed.of_others += squares_in(bands, *error);
+  }
+  return needed;
+}
 
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
                             const RayLight& light, const TransportFacts& facts, const SolverOptions& options) {

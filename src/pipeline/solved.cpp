@@ -11,7 +11,6 @@
 #include "base/tolerances.h"
 #include "base/vectors.h"
 #include "pipeline/radiosity_errors.h"
-#include "pipeline/run.h"
 #include "pipeline/solve_with_rays.h"
 #include "solve/scattering.h"
 
@@ -60,27 +59,6 @@ Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& p
   if (observer && !observer(last)) throw Cancelled();
   return solution;
 }
-
-}  // namespace
-
-Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
-                          const Observer& observer) {
-  Field H = Field::Zero(exitance.rows(), exitance.cols());
-  for (const PatchRange& lamp : lamps_of(exitance)) {
-    if (observer && !observer({.stage = stage})) throw Cancelled();
-    const Eigen::Index count = lamp.end - lamp.begin;
-    H += transport.shoot(lamp, exitance.middleRows(lamp.begin, count));
-  }
-  return H;
-}
-
-SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
-  if (simulates(plan, Effect::interreflection)) return solve ? std::move(solve) : SolveWith(patchlight::solve);
-  return [](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
-            const Observer& observer) { return light_of_lamps(transport, problem, observer); };
-}
-
-namespace {
 
 // Solves with some options.
 using Solve = std::function<Solution(const SolverOptions& options)>;
@@ -166,6 +144,23 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
 }
 
 }  // namespace
+
+Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
+                          const Observer& observer) {
+  Field H = Field::Zero(exitance.rows(), exitance.cols());
+  for (const PatchRange& lamp : lamps_of(exitance)) {
+    if (observer && !observer({.stage = stage})) throw Cancelled();
+    const Eigen::Index count = lamp.end - lamp.begin;
+    H += transport.shoot(lamp, exitance.middleRows(lamp.begin, count));
+  }
+  return H;
+}
+
+SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
+  if (simulates(plan, Effect::interreflection)) return solve ? std::move(solve) : SolveWith(patchlight::solve);
+  return [](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
+            const Observer& observer) { return light_of_lamps(transport, problem, observer); };
+}
 
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
   Simulation simulation;

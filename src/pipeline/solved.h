@@ -6,8 +6,8 @@
 #include "patchlight/simulate.h"
 #include "patchlight/transport/transport_operator.h"
 
-#include "pipeline/lit_problem.h"
 #include "pipeline/mesh_transport.h"
+#include "pipeline/problem_of.h"
 #include "pipeline/run.h"
 
 namespace patchlight {

@@ -11,10 +11,9 @@
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
-#include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
+#include "pipeline/problem_of.h"
 #include "pipeline/radiosity_errors.h"
-#include "pipeline/run.h"
 #include "pipeline/solved.h"
 #include "plan/goal.h"
 #include "transport/closure.h"
@@ -72,13 +71,8 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
   return unseen;
 }
 
-// Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
-// patches, for the sake of time: the mean over the patches around takes the noise away.
+// Rays from each quarter of a patch: enough to see into gaps narrower than patches.
 constexpr int rays_from_quarters = 8;
-
-int usual_rays_of_quarters(PatchIndex patches) {
-  return patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
-}
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
@@ -108,29 +102,24 @@ struct SamplingErrors {
   std::vector<Field> draws;
 };
 
-// Light straight from the lamps is found twice, unless lamps are too many.
-SamplingErrors sampling_errors_in_bands(const Run& run, const Simulation& simulation, const Assembly& raw,
-                                        const RowTransport& transport, const SolvedProblem& solved) {
-  const PatchMesh& mesh = simulation.mesh;
-  const Field& B = solved.solution.radiosity;
-  const Field& E = solved.problem.exitance;
-  SamplingErrors found;
-  if (share_of_lamps(solved.problem) > most_lamps) {
-    found.draws = draw_form_factor_errors(mesh, raw, transport, solved, B);
-    found.error = mean_square(found.draws).sqrt();
-    return found;
-  }
-  const Field direct = direct_light_errors(mesh, transport, solved.problem, direct_difference(run, simulation, raw, E));
-  found.draws = draw_form_factor_errors(mesh, raw, transport, solved, B - E);
-  found.error = (direct.square() + mean_square(found.draws)).sqrt();
-  return found;
-}
-
+// Light straight from the lamps is computed twice, unless lamps are too many.
 SamplingErrors sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw,
                                const RowTransport& transport, const SolvedProblem& solved) {
   const InNeededBands needed = in_needed_bands(solved);
   const SolvedProblem in_bands{needed.problem, needed.solution, solved.closed};
-  SamplingErrors found = sampling_errors_in_bands(run, simulation, raw, transport, in_bands);
+  const PatchMesh& mesh = simulation.mesh;
+  const Field& B = needed.solution.radiosity;
+  const Field& E = needed.problem.exitance;
+  SamplingErrors found;
+  if (share_of_lamps(needed.problem) > most_lamps) {
+    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B);
+    found.error = mean_square(found.draws).sqrt();
+  } else {
+    const Field direct =
+        direct_light_errors(mesh, transport, needed.problem, direct_difference(run, simulation, raw, E));
+    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B - E);
+    found.error = (direct.square() + mean_square(found.draws)).sqrt();
+  }
   found.error = expanded(found.error, needed.bands);
   for (Field& draw : found.draws) draw = expanded(draw, needed.bands);
   return found;
@@ -206,9 +195,11 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
          scaled_to(squares(bars.unseen.error), unseen.cwiseMax(0.0));
 }
 
-// More rays where rows have more, and up to 16 for an accuracy below 10 %, as the bars have to be smaller.
+// Fewer rays where there are many patches, for the sake of time: the mean over the patches around reduces the noise.
+// More where rows have more, and up to 16 for an accuracy below 10 %, as the bars have to be smaller.
 int rays_of_quarters(const Simulation& simulation) {
-  const int usual = usual_rays_of_quarters(simulation.mesh.size());
+  const PatchIndex patches = simulation.mesh.size();
+  const int usual = patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
   const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
   const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
   const double of_accuracy = asked ? std::min(16.0 / usual, 0.1 / *asked) : 1;

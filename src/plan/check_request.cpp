@@ -5,6 +5,7 @@
 #include "accuracy/spaces.h"
 
 #include <initializer_list>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -147,15 +148,9 @@ void require_rows_possible(const Request& request, const Given& given) {
                                           name_of(request.assembly.storage) + "\nhint: assembly.storage=rays");
 }
 
-// An option that leaves no error bars, and why.
-struct Obstacle {
-  Asked asked;
-  const char* why;
-};
-
-// Error bars take the closed matrix of the automatic estimator, made in the run, and the solution to be exact but for
-// the solver's error.
-std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Given& given) {
+// The options that leave no error bars, and why: these take the closed matrix of the automatic estimator, made in the
+// run, and the solution to be exact but for the solver's error.
+std::vector<std::pair<Asked, const char*>> obstacles_to_error_bars(const Request& request, const Given& given) {
   const char* const found_in_the_run = "error bars need form factors that are computed in this run";
   const char* const closed = "error bars need closure";
   return {{on_demand(request), found_in_the_run},

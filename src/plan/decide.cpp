@@ -1,7 +1,5 @@
 #include "plan/decide.h"
 
-#include "patchlight/plan/effects.h"
-
 #include "light/texture.h"
 #include "plan/survey.h"
 #include "scene/all_spectra.h"
@@ -11,10 +9,10 @@
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -151,51 +149,6 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   if (scene.sun || scene.sky) facts.sees_out = some_side_sees_out(scene, kept);
   return facts;
 }
-
-}  // namespace
-
-bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon) {
-  const Polygon& face = scene.polygons[polygon];
-  return is_opening(scene, polygon) && (reflects(scene.materials[material_on(face, Side::front)]) ||
-                                        reflects(scene.materials[material_on(face, Side::back)]));
-}
-
-std::size_t coloured_specular(const Scene& scene, const KeptSides& kept) {
-  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
-  return static_cast<std::size_t>(
-      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
-}
-
-EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
-  EffectFacts facts;
-  facts.polygons = scene.polygons.size();
-  const std::vector<std::uint8_t> on_hull = on_convex_hull(scene);
-  facts.inside_hull = static_cast<std::size_t>(std::count(on_hull.begin(), on_hull.end(), std::uint8_t{0}));
-
-  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
-  for (const Material* material : in_use)
-    facts.highest_reflectance = std::max(facts.highest_reflectance, highest_scattered(*material));
-  facts.bands = number_of_bands(scene);
-  facts.band_choice = scene.band_choice;
-  facts.grey = is_grey(scene, in_use);
-  facts.coloured_specular = coloured_specular(scene, kept);
-  const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
-  facts.lamp_colour = common_colour(spectra);
-  facts.dark_bands = bands_without_light(spectra, facts.bands);
-
-  facts.materials = in_use.size();
-  facts = with_texture_facts(std::move(facts), scene, kept);
-
-  facts.dark_solids = kept.dark_solids;
-  facts.unreached = kept.unreached;
-  facts.turned_away = kept.turned_away;
-  facts = with_lights(std::move(facts), scene, kept);
-  for (const UnsimulatedMaterials& found : scene.unsimulated)
-    (found.property == UnsimulatedProperty::mirror ? facts.gloss : facts.glass) += found.materials;
-  return facts;
-}
-
-namespace {
 
 // The decision that the facts call for, or the one that the request asks for instead.
 Decision overruled(Decision by_facts, const Request& request) {
@@ -411,7 +364,53 @@ bool is_there(Effect effect, const EffectFacts& facts) {
   }
 }
 
+const char* word_for(const Decision& decision) {
+  if (decision.forced) return decision.simulate ? "enabled by option" : "disabled by option";
+  return decision.simulate ? "simulated" : "left out";
+}
+
 }  // namespace
+
+bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon) {
+  const Polygon& face = scene.polygons[polygon];
+  return is_opening(scene, polygon) && (reflects(scene.materials[material_on(face, Side::front)]) ||
+                                        reflects(scene.materials[material_on(face, Side::back)]));
+}
+
+std::size_t coloured_specular(const Scene& scene, const KeptSides& kept) {
+  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
+  return static_cast<std::size_t>(
+      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
+}
+
+EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
+  EffectFacts facts;
+  facts.polygons = scene.polygons.size();
+  const std::vector<std::uint8_t> on_hull = on_convex_hull(scene);
+  facts.inside_hull = static_cast<std::size_t>(std::count(on_hull.begin(), on_hull.end(), std::uint8_t{0}));
+
+  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
+  for (const Material* material : in_use)
+    facts.highest_reflectance = std::max(facts.highest_reflectance, highest_scattered(*material));
+  facts.bands = number_of_bands(scene);
+  facts.band_choice = scene.band_choice;
+  facts.grey = is_grey(scene, in_use);
+  facts.coloured_specular = coloured_specular(scene, kept);
+  const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
+  facts.lamp_colour = common_colour(spectra);
+  facts.dark_bands = bands_without_light(spectra, facts.bands);
+
+  facts.materials = in_use.size();
+  facts = with_texture_facts(std::move(facts), scene, kept);
+
+  facts.dark_solids = kept.dark_solids;
+  facts.unreached = kept.unreached;
+  facts.turned_away = kept.turned_away;
+  facts = with_lights(std::move(facts), scene, kept);
+  for (const UnsimulatedMaterials& found : scene.unsimulated)
+    (found.property == UnsimulatedProperty::mirror ? facts.gloss : facts.glass) += found.materials;
+  return facts;
+}
 
 Decision closed_by_rays() {
   return {Effect::closure, false, "each row of rays is closed by itself", "products with the matrix"};
@@ -454,15 +453,6 @@ Diagnostics notes_on_overruling(const EffectFacts& facts, const Request& request
   return notes;
 }
 
-namespace {
-
-const char* word_for(const Decision& decision) {
-  if (decision.forced) return decision.simulate ? "enabled by option" : "disabled by option";
-  return decision.simulate ? "simulated" : "left out";
-}
-
-}  // namespace
-
 std::vector<Effect> simulated_effects() {
   return {Effect::occlusion, Effect::interreflection, Effect::colour, Effect::reach,
           Effect::backs,     Effect::luminaires,      Effect::sun,    Effect::sky,
@@ -470,39 +460,10 @@ std::vector<Effect> simulated_effects() {
 }
 
 const char* name_of(Effect effect) {
-  switch (effect) {
-    case Effect::occlusion:
-      return "occlusion";
-    case Effect::interreflection:
-      return "interreflection";
-    case Effect::colour:
-      return "color";
-    case Effect::reach:
-      return "reach";
-    case Effect::backs:
-      return "backs";
-    case Effect::luminaires:
-      return "luminaires";
-    case Effect::sun:
-      return "sun";
-    case Effect::sky:
-      return "sky";
-    case Effect::closure:
-      return "closure";
-    case Effect::textures:
-      return "textures";
-    case Effect::mirrors:
-      return "mirrors";
-    case Effect::bands_of_panes:
-      return "color of panes";
-    case Effect::spectra:
-      return "spectra";
-    case Effect::gloss:
-      return "gloss";
-    case Effect::glass:
-      return "glass";
-  }
-  return "";
+  constexpr std::array names = {
+      "occlusion", "interreflection", "color",   "reach",          "backs",   "luminaires", "sun",  "sky",
+      "textures",  "mirrors",         "closure", "color of panes", "spectra", "gloss",      "glass"};
+  return names.at(static_cast<std::size_t>(effect));
 }
 
 bool contains(const std::vector<Effect>& effects, Effect effect) {

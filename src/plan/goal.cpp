@@ -5,11 +5,9 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "base/vectors.h"
-#include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
 #include "mesh/small_patches.h"
 #include "plan/survey.h"
-#include "scene/coverings.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -164,6 +162,43 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
   return PatchLookup(mesh).patches_at(places);
 }
 
+// The importance of each patch, and whether it has enough hits to tell its parts apart. Otherwise it shares its
+// importance equally among its parts, whose own hits would be chance.
+struct PatchImportance {
+  std::vector<double> of_patch;
+  std::vector<std::uint8_t> has_many_hits;
+};
+
+PatchImportance importance_of(const PatchMesh& mesh, const std::vector<ImportanceHit>& hits) {
+  PatchImportance found{std::vector<double>(mesh.size(), 0), {}};
+  std::vector<double> number(mesh.size(), 0);
+  const std::vector<PatchIndex> met = patches_of(hits, mesh);
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    if (met[k] == no_patch) continue;
+    const double size = std::sqrt(mesh.area[met[k]]);
+    number[met[k]] += 1;
+    found.of_patch[met[k]] += std::pow(std::min(1.0, size * hits[k].closeness), mesh_order);
+  }
+  for (const double n : number) found.has_many_hits.push_back(n >= 8 ? 1 : 0);
+  return found;
+}
+
+// The importance of the patches of a refined mesh.
+PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
+                                 const std::vector<ImportanceHit>& hits) {
+  const double left = std::pow(0.5, mesh_order) / 4;
+  PatchImportance now = importance_of(refined.mesh, hits);
+  std::vector<int> parts(before.of_patch.size(), 0);
+  for (const PatchIndex parent : refined.parent) ++parts[parent];
+  for (PatchIndex i = 0; i < refined.mesh.size(); ++i) {
+    const PatchIndex parent = refined.parent[i];
+    if (before.has_many_hits[parent] != 0) continue;
+    now.of_patch[i] = before.of_patch[parent] * (parts[parent] > 1 ? left : 1);
+    now.has_many_hits[i] = 0;
+  }
+  return now;
+}
+
 }  // namespace
 
 std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides, const Coverings& coverings,
@@ -208,47 +243,6 @@ PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal) {
     if (goal->is_goal[p] == 0) coarsest[p] = 2 * width_of(scene, p);
   return {max_edge, std::move(coarsest)};
 }
-
-namespace {
-
-// The importance of each patch, and whether it has enough hits to tell its parts apart. Otherwise it shares its
-// importance equally among its parts, whose own hits would be chance.
-struct PatchImportance {
-  std::vector<double> of_patch;
-  std::vector<std::uint8_t> has_many_hits;
-};
-
-PatchImportance importance_of(const PatchMesh& mesh, const std::vector<ImportanceHit>& hits) {
-  PatchImportance found{std::vector<double>(mesh.size(), 0), {}};
-  std::vector<double> number(mesh.size(), 0);
-  const std::vector<PatchIndex> met = patches_of(hits, mesh);
-  for (std::size_t k = 0; k < met.size(); ++k) {
-    if (met[k] == no_patch) continue;
-    const double size = std::sqrt(mesh.area[met[k]]);
-    number[met[k]] += 1;
-    found.of_patch[met[k]] += std::pow(std::min(1.0, size * hits[k].closeness), mesh_order);
-  }
-  for (const double n : number) found.has_many_hits.push_back(n >= 8 ? 1 : 0);
-  return found;
-}
-
-// The importance of the patches of a refined mesh.
-PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
-                                 const std::vector<ImportanceHit>& hits) {
-  const double left = std::pow(0.5, mesh_order) / 4;
-  PatchImportance now = importance_of(refined.mesh, hits);
-  std::vector<int> parts(before.of_patch.size(), 0);
-  for (const PatchIndex parent : refined.parent) ++parts[parent];
-  for (PatchIndex i = 0; i < refined.mesh.size(); ++i) {
-    const PatchIndex parent = refined.parent[i];
-    if (before.has_many_hits[parent] != 0) continue;
-    now.of_patch[i] = before.of_patch[parent] * (parts[parent] > 1 ? left : 1);
-    now.has_many_hits[i] = 0;
-  }
-  return now;
-}
-
-}  // namespace
 
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches) {
   const auto is_around = [&](const PatchMesh& of, PatchIndex i) { return goal.is_goal[of.polygon[i]] == 0; };

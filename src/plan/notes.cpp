@@ -30,6 +30,67 @@ std::string advice_for(const Scene& scene, double nearest) {
   return "compare with mesh.max_edge=" + edge.str() + " in the model's units, or " + by_outline;
 }
 
+constexpr const char* advice_to_recompute = "\nhint: compute the form factors again with the present lamps";
+
+// Names of the materials that emit, but from no kept side.
+std::vector<std::string> dark_lamps(const Scene& scene, const KeptSides& kept) {
+  std::vector<std::uint8_t> emits_somewhere(scene.materials.size(), 0);
+  std::vector<std::uint8_t> emits_from_kept(scene.materials.size(), 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back}) {
+      if (!emits(scene, p, side)) continue;
+      const MaterialIndex material = material_on(scene.polygons[p], side);
+      emits_somewhere[material] = 1;
+      if (is_kept(kept, p, side)) emits_from_kept[material] = 1;
+    }
+  }
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (emits_somewhere[m] && !emits_from_kept[m]) names.push_back(scene.materials[m].name);
+  }
+  return names;
+}
+
+std::string note_on_coarse(const std::string& faces, std::size_t corners, std::size_t left_out, double max_edge) {
+  std::ostringstream text;
+  text.precision(2);
+  text << faces << " with an outline of up to " << corners
+       << " corners, finer than the patches: these follow one of the same area without up to " << left_out
+       << " of them, nowhere farther away than " << outline_tolerance * max_edge << " m";
+  return text.str();
+}
+
+std::string note_on_kept(const std::string& faces, std::size_t corners) {
+  return faces + " with an outline of up to " + std::to_string(corners) +
+         " corners where other faces meet it or it turns, finer than the patches asked for: these are kept, so that "
+         "each side takes " +
+         std::to_string(corners - 2) + " patches at least; an outline of fewer corners takes fewer";
+}
+
+// True when the point lies over the polygon, seen along its normal.
+bool lies_over(const Point& point, const std::vector<Point>& corners, const Vector& normal) {
+  const auto triangles = triangulate(corners);
+  const auto is_left = [&](std::size_t a, std::size_t b) {
+    return normal.dot((corners[b] - corners[a]).cross(point - corners[a])) >= 0;
+  };
+  return std::any_of(triangles.begin(), triangles.end(), [&](const auto& triangle) {
+    const auto& [a, b, c] = triangle;
+    return is_left(a, b) && is_left(b, c) && is_left(c, a);
+  });
+}
+
+// The trouble with a luminaire at this height over the front of a face over which it lies; empty where it is well
+// before the side that it lights.
+std::string trouble_at(const Luminaire& luminaire, double height, const Vector& normal, double nearest) {
+  if (std::abs(height) <= nearest)
+    return std::holds_alternative<PointLight>(luminaire.light)
+               ? "in the plane of a face, so that half of its light goes to either side"
+               : "";
+  if (!(height * luminaire.aim.dot(normal) < 0)) return {};
+  return rounded(1000 * std::abs(height)) +
+         " mm behind a face towards which it shines, so that it lights the other side";
+}
+
 }  // namespace
 
 Diagnostics notes_on_close_lamps(const Scene& scene, const Occluder& occluder, double max_edge) {
@@ -63,37 +124,12 @@ Diagnostics notes_on_close_lamps(const Scene& scene, const Occluder& occluder, d
   return {{DiagnosticCode::close_lamp, note.str(), count}};
 }
 
-namespace {
-
-constexpr const char* advice = "\nhint: compute the form factors again with the present lamps";
-
-// Names of the materials that emit, but from no kept side.
-std::vector<std::string> dark_lamps(const Scene& scene, const KeptSides& kept) {
-  std::vector<std::uint8_t> emits_somewhere(scene.materials.size(), 0);
-  std::vector<std::uint8_t> emits_from_kept(scene.materials.size(), 0);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    for (const Side side : {Side::front, Side::back}) {
-      if (!emits(scene, p, side)) continue;
-      const MaterialIndex material = material_on(scene.polygons[p], side);
-      emits_somewhere[material] = 1;
-      if (is_kept(kept, p, side)) emits_from_kept[material] = 1;
-    }
-  }
-  std::vector<std::string> names;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (emits_somewhere[m] && !emits_from_kept[m]) names.push_back(scene.materials[m].name);
-  }
-  return names;
-}
-
-}  // namespace
-
 Diagnostics notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, Sides sides) {
   Diagnostics notes;
   for (const std::string& name : dark_lamps(scene, kept)) {
     notes.push_back({DiagnosticCode::lost_light,
                      "material '" + name + "' emits, but no light comes from it: its faces were left out of the " +
-                         "form factors" + advice});
+                         "form factors" + advice_to_recompute});
   }
   const KeptSides now = kept_sides(scene, sides);
   std::size_t left_out = 0;
@@ -105,29 +141,9 @@ Diagnostics notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, S
                    "with these lamps " + counted(left_out, "side") +
                        " of faces would take part that did not when the form factors were made: light that arrives "
                        "there is lost" +
-                       advice});
+                       advice_to_recompute});
   return notes;
 }
-
-namespace {
-
-std::string note_on_coarse(const std::string& faces, std::size_t corners, std::size_t left_out, double max_edge) {
-  std::ostringstream text;
-  text.precision(2);
-  text << faces << " with an outline of up to " << corners
-       << " corners, finer than the patches: these follow one of the same area without up to " << left_out
-       << " of them, nowhere farther away than " << outline_tolerance * max_edge << " m";
-  return text.str();
-}
-
-std::string note_on_kept(const std::string& faces, std::size_t corners) {
-  return faces + " with an outline of up to " + std::to_string(corners) +
-         " corners where other faces meet it or it turns, finer than the patches asked for: these are kept, so that "
-         "each side takes " +
-         std::to_string(corners - 2) + " patches at least; an outline of fewer corners takes fewer";
-}
-
-}  // namespace
 
 Diagnostics notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, std::size_t asked, double max_edge) {
   const std::vector<std::size_t> left_out = left_out_corners(scene, max_edge);
@@ -154,34 +170,6 @@ Diagnostics notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, s
   if (!kept.empty()) notes.push_back({DiagnosticCode::fine_outline, note_on_kept(listed(scene, kept), most_kept)});
   return notes;
 }
-
-namespace {
-
-// True when the point lies over the polygon, seen along its normal.
-bool lies_over(const Point& point, const std::vector<Point>& corners, const Vector& normal) {
-  const auto triangles = triangulate(corners);
-  const auto is_left = [&](std::size_t a, std::size_t b) {
-    return normal.dot((corners[b] - corners[a]).cross(point - corners[a])) >= 0;
-  };
-  return std::any_of(triangles.begin(), triangles.end(), [&](const auto& triangle) {
-    const auto& [a, b, c] = triangle;
-    return is_left(a, b) && is_left(b, c) && is_left(c, a);
-  });
-}
-
-// The trouble with a luminaire at this height over the front of a face over which it lies; empty where it is well
-// before the side that it lights.
-std::string trouble_at(const Luminaire& luminaire, double height, const Vector& normal, double nearest) {
-  if (std::abs(height) <= nearest)
-    return std::holds_alternative<PointLight>(luminaire.light)
-               ? "in the plane of a face, so that half of its light goes to either side"
-               : "";
-  if (!(height * luminaire.aim.dot(normal) < 0)) return {};
-  return rounded(1000 * std::abs(height)) +
-         " mm behind a face towards which it shines, so that it lights the other side";
-}
-
-}  // namespace
 
 Diagnostics notes_on_luminaires_behind(const Scene& scene) {
   Diagnostics notes;

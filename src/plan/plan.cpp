@@ -1,11 +1,9 @@
 #include "patchlight/plan/plan.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/scene.h"
 
 #include "mesh/mesher.h"
 #include "plan/check_request.h"
-#include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/goal.h"
 #include "plan/memory.h"
@@ -16,18 +14,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
-
-void require_lamp(const Scene& scene) {
-  if (!has_lamp(scene)) throw InputError(scene.file, "no light source: " + first_light(scene).advice);
-}
 
 // A run without any light is not meant.
 void require_light(const Scene& scene, const EffectFacts& facts, const std::vector<Decision>& decisions) {
@@ -46,11 +36,6 @@ void require_light(const Scene& scene, const EffectFacts& facts, const std::vect
 bool simulates(const std::vector<Decision>& decisions, Effect effect) {
   return std::none_of(decisions.begin(), decisions.end(),
                       [effect](const Decision& decision) { return decision.effect == effect && !decision.simulate; });
-}
-
-std::string note_on_patches(const Scene& scene, std::size_t asked, std::size_t wanted) {
-  return "the model's " + std::to_string(scene.polygons.size()) + " faces take " + std::to_string(wanted) +
-         " patches, not " + std::to_string(asked) + ", so that large faces are divided as well";
 }
 
 // How finely the kept sides are cut.
@@ -109,7 +94,10 @@ PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& r
       around,
       {}};
   if (wanted > asked && !refines(request.accuracy))
-    size.notes.push_back({DiagnosticCode::more_patches, note_on_patches(of.scene, asked, wanted)});
+    size.notes.push_back({DiagnosticCode::more_patches, "the model's " + std::to_string(of.scene.polygons.size()) +
+                                                            " faces take " + std::to_string(wanted) + " patches, not " +
+                                                            std::to_string(asked) +
+                                                            ", so that large faces are divided as well"});
   return size;
 }
 
@@ -163,7 +151,7 @@ Plan with_nothing_open(Plan plan) {
 }  // namespace
 
 Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
-  require_lamp(scene);
+  if (!has_lamp(scene)) throw InputError(scene.file, "no light source: " + first_light(scene).advice);
   KeptSides sides = sides_for(scene, asked);
   const auto coverings = std::make_shared<const Coverings>(find_coverings(scene, sides));
   // Form factors that are given belong to a mesh that knows of no light.

@@ -5,7 +5,6 @@
 #include "mesh/mesher.h"
 #include "plan/survey.h"
 #include "scene/bent_faces.h"
-#include "scene/coverings.h"
 #include "scene/extent.h"
 #include "visibility/occluder.h"
 
@@ -239,33 +238,6 @@ bool is_along_outline(const ContactLine& line, const std::vector<Point>& corners
   return false;
 }
 
-}  // namespace
-
-std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, const KeptSides& kept,
-                                                        const Coverings& coverings,
-                                                        const std::vector<LightPlace>& lights) {
-  const std::vector<Silhouette> edges = silhouettes(scene, lights);
-  const ShadowSearch search{scene, kept, Occluder(scene, Occluder::Blockers::opaque, coverings),
-                            1e-5 * extent_of(scene), weld_distance(scene)};
-  std::vector<std::vector<ShadowLine>> found(edges.size());
-  parallel_for(edges.size(), [&](std::size_t k) { found[k] = search.lines_of(edges[k]); });
-  std::vector<std::vector<ShadowLine>> on(scene.polygons.size());
-  for (const auto& some : found) {
-    for (const ShadowLine& line : some) on[line.polygon].push_back(line);
-  }
-  std::vector<std::vector<ContactLine>> lines(scene.polygons.size());
-  parallel_for(on.size(), [&](std::size_t p) {
-    const std::vector<Point> corners = corner_points(scene, static_cast<PolygonIndex>(p));
-    tie_loose_ends(on[p], corners);
-    for (const ShadowLine& line : on[p]) {
-      if (!is_along_outline(line.line, corners, 4 * search.beside)) lines[p].push_back(line.line);
-    }
-  });
-  return lines;
-}
-
-namespace {
-
 // So many are followed at most: with the longest 40,000 of a house in IFC and 100,000 patches its walls stay whole,
 // edges being 4.3 m long and not 1.7, and planning takes twice as long.
 constexpr std::size_t most_lines = 10'000;
@@ -420,6 +392,29 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
 }
 
 }  // namespace
+
+std::vector<std::vector<ContactLine>> find_shadow_lines(const Scene& scene, const KeptSides& kept,
+                                                        const Coverings& coverings,
+                                                        const std::vector<LightPlace>& lights) {
+  const std::vector<Silhouette> edges = silhouettes(scene, lights);
+  const ShadowSearch search{scene, kept, Occluder(scene, Occluder::Blockers::opaque, coverings),
+                            1e-5 * extent_of(scene), weld_distance(scene)};
+  std::vector<std::vector<ShadowLine>> found(edges.size());
+  parallel_for(edges.size(), [&](std::size_t k) { found[k] = search.lines_of(edges[k]); });
+  std::vector<std::vector<ShadowLine>> on(scene.polygons.size());
+  for (const auto& some : found) {
+    for (const ShadowLine& line : some) on[line.polygon].push_back(line);
+  }
+  std::vector<std::vector<ContactLine>> lines(scene.polygons.size());
+  parallel_for(on.size(), [&](std::size_t p) {
+    const std::vector<Point> corners = corner_points(scene, static_cast<PolygonIndex>(p));
+    tie_loose_ends(on[p], corners);
+    for (const ShadowLine& line : on[p]) {
+      if (!is_along_outline(line.line, corners, 4 * search.beside)) lines[p].push_back(line.line);
+    }
+  });
+  return lines;
+}
 
 PlannedLines planned_lines(const Scene& scene, const Request& request, const KeptSides& sides,
                            const Coverings& coverings, bool knows_lights) {

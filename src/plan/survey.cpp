@@ -1,7 +1,6 @@
 #include "plan/survey.h"
 
 #include "patchlight/base/diagnostics.h"
-#include "patchlight/scene/scene.h"
 
 #include "base/near_match.h"
 #include "base/rounded.h"
@@ -18,15 +17,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <map>
-#include <optional>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -69,27 +64,6 @@ bool is_lamp_word(const std::string& word) {
          std::any_of(lamp_endings.begin(), lamp_endings.end(), ends);
 }
 
-}  // namespace
-
-bool is_name_of_lamp(const std::string& name) {
-  const std::vector<std::string> words = words_of(name);
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (is_lamp_word(words[k])) return true;
-    const bool is_of_thing =
-        k + 1 < words.size() && std::find(light_things.begin(), light_things.end(), words[k + 1]) != light_things.end();
-    if (words[k] == "light" && !is_of_thing) return true;
-  }
-  return false;
-}
-
-std::string first_few(std::span<const std::string> names, std::size_t few) {
-  std::string list;
-  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
-  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
-}
-
-namespace {
-
 constexpr const char* usual_sky = "read.daylight.sky=overcast:10000lx";
 
 // The reader's hints, else the materials with a name like a lamp's.
@@ -126,25 +100,6 @@ std::string advice_on_other_light(const Scene& scene, const std::optional<Solid>
   return std::string("\nhint: add daylight") + (hull ? " from outside: " : ": ") + usual_sky +
          "\nhint: create a scene with lamps or daylight: patchlight init MODEL -o SCENE.toml";
 }
-
-}  // namespace
-
-FirstLight first_light(const Scene& scene) {
-  const std::optional<Solid> hull = sealed_hull(scene);
-  const std::vector<LampHint> hints = possible_lamps(scene);
-  FirstLight light;
-  light.advice = "no material emits" + advice_on_lamps(hints) + advice_on_other_light(scene, hull);
-  const bool is_sealed = hull && is_room(scene, *hull);
-  if (!is_sealed) light.setting = usual_sky;
-  if (is_sealed && !hints.empty()) light.setting = setting_for(hints.front());
-  if (!hints.empty()) return light;
-  std::vector<std::string> names;
-  for (const Material& material : scene.materials) names.push_back(material.name);
-  light.advice += "\nhint: make a material emit, one of " + first_few(names) + ": read.settings MATERIAL.radiance=10";
-  return light;
-}
-
-namespace {
 
 std::vector<Box> boxes_of_polygons(const Scene& scene) {
   std::vector<Box> boxes(scene.polygons.size());
@@ -314,6 +269,11 @@ std::string class_of(const std::string& name) {
   return name.starts_with("Ifc") && end != std::string::npos ? name.substr(0, end) + "_*" : name;
 }
 
+std::vector<ObjectFacts> largest_first(std::vector<ObjectFacts> all) {
+  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
+  return all;
+}
+
 std::vector<ObjectFacts> facts_of_objects(const Scene& scene) {
   std::vector<ObjectFacts> all(scene.groups.size());
   for (std::uint32_t group = 0; group < all.size(); ++group) all[group].name = group_name(scene, group);
@@ -323,8 +283,7 @@ std::vector<ObjectFacts> facts_of_objects(const Scene& scene) {
     facts.area += area_of(scene, p);
   }
   std::erase_if(all, [](const ObjectFacts& facts) { return facts.faces == 0; });
-  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
-  return all;
+  return largest_first(std::move(all));
 }
 
 std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
@@ -338,24 +297,46 @@ std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
   }
   std::vector<ObjectFacts> all;
   for (const auto& [name, facts] : classes) all.push_back(facts);
-  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
-  return all;
+  return largest_first(std::move(all));
 }
 
 }  // namespace
 
-const char* name_of(SkyKind kind) {
-  switch (kind) {
-    case SkyKind::uniform:
-      return "uniform";
-    case SkyKind::cie_overcast:
-      return "overcast";
-    case SkyKind::cie_clear:
-      return "clear";
-    case SkyKind::perez:
-      return "perez";
+bool is_name_of_lamp(const std::string& name) {
+  const std::vector<std::string> words = words_of(name);
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (is_lamp_word(words[k])) return true;
+    const bool is_of_thing =
+        k + 1 < words.size() && std::find(light_things.begin(), light_things.end(), words[k + 1]) != light_things.end();
+    if (words[k] == "light" && !is_of_thing) return true;
   }
-  return "";
+  return false;
+}
+
+std::string first_few(std::span<const std::string> names, std::size_t few) {
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
+  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
+}
+
+FirstLight first_light(const Scene& scene) {
+  const std::optional<Solid> hull = sealed_hull(scene);
+  const std::vector<LampHint> hints = possible_lamps(scene);
+  FirstLight light;
+  light.advice = "no material emits" + advice_on_lamps(hints) + advice_on_other_light(scene, hull);
+  const bool is_sealed = hull && is_room(scene, *hull);
+  if (!is_sealed) light.setting = usual_sky;
+  if (is_sealed && !hints.empty()) light.setting = setting_for(hints.front());
+  if (!hints.empty()) return light;
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) names.push_back(material.name);
+  light.advice += "\nhint: make a material emit, one of " + first_few(names) + ": read.settings MATERIAL.radiance=10";
+  return light;
+}
+
+const char* name_of(SkyKind kind) {
+  constexpr std::array names = {"uniform", "overcast", "clear", "perez"};
+  return names.at(static_cast<std::size_t>(kind));
 }
 
 std::size_t kept_side_count(const KeptSides& sides) {

@@ -1,8 +1,7 @@
-#include "pipeline/problem_of.h"
-
 #include "patchlight/simulate.h"
 
 #include "mesh/mesher.h"
+#include "pipeline/problem_of.h"
 #include "scene/joined_faces.h"
 
 #include <algorithm>

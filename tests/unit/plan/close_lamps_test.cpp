@@ -1,5 +1,4 @@
 #include "plan/notes.h"
-
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 
