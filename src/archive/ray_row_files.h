@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "archive/form_factor_files.h"
-#include "pipeline/ray_form_factors.h"
+#include "pipeline/form_factors.h"
 #include "transport/ray_rows.h"
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 #include "output/file/whole_file.h"
 #include "output/report/write_verification.h"
 #include "pipeline/world.h"
-#include "plan/close_lamps.h"
+#include "plan/notes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "output/report/write_survey.h"
 #include "pipeline/expected_cost.h"
 #include "pipeline/first_mesh.h"
-#include "pipeline/second_mesh.h"
+#include "pipeline/local_cuts.h"
 #include "plan/check_request.h"
 #include "plan/memory.h"
 #include "scene/model_face.h"

@@ -23,7 +23,7 @@
 #include "output/vtk/write_points.h"
 #include "output/vtk/write_vtk.h"
 #include "page/write_page.h"
-#include "pipeline/stage_clock.h"
+#include "pipeline/run.h"
 #include "plan/check_request.h"
 #include "plan/survey.h"
 #include "scene/extent.h"

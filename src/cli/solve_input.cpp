@@ -7,7 +7,7 @@
 #include "archive/scene_file.h"
 #include "input/tables/read_points.h"
 #include "input/text.h"
-#include "plan/choose_storage.h"
+#include "plan/memory.h"
 #include "scene/specular_faces.h"
 
 #include <cmath>

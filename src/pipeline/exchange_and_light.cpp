@@ -4,8 +4,8 @@
 
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "pipeline/lamps_apart.h"
-#include "pipeline/problem_of.h"
+#include "lighting/lamp_faces.h"
+#include "lighting/mirrored_irradiance.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "transport/ray_rows.h"
@@ -15,23 +15,128 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that look at
-// backs most lie inside of solids, which few rays tell as well.
+// Sums over all bands, per patch.
+Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
+
+struct Lamp {
+  LampSide side;
+  double flux = 0;
+};
+
+// The sides that emit much, the strongest first.
+std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
+  const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
+  const double mean = scalar_product(exitance, problem.area) / total(problem.area);
+  std::vector<Lamp> lamps;
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    for (const Side side : {Side::front, Side::back}) {
+      const PatchRange patches = mesh.patches_on(polygon, side);
+      if (patches.begin == patches.end || !(exitance[patches.begin] > bright * mean)) continue;
+      const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
+      lamps.push_back({{polygon, side}, exitance[patches.begin] * problem.area.segment(patches.begin, count).sum()});
+    }
+  }
+  std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
+  return lamps;
+}
+
+// The factors of lamps, the patches of a side each, by the clear faces of the run.
+LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
+                             const PatchMesh& mesh) {
+  std::vector<LampSide> sides;
+  for (const PatchRange& lamp : lamps) sides.push_back({mesh.polygon[lamp.begin], mesh.side[lamp.begin]});
+  return lamp_factors(run.scene, mesh, run.world->between_patches(), sides,
+                      {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+}
+
+// The factors of the lamps that are apart, without rows.
+RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
+  RayExchange found;
+  for (const LampSide& lamp : lamps_apart(run.scene, mesh, problem, run.world->tracing()))
+    found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
+  found.lamp_factors = factors_of_lamps(found.lamps, run, plan, mesh);
+  return found;
+}
+
+// Lamps that are bright now, and neither apart nor bright when the rows were traced: their rays would miss most of it.
+std::vector<PatchRange> new_lamps(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                  const RayExchange& known) {
+  std::vector<PatchRange> lamps;
+  std::size_t pieces = 0;
+  for (const Lamp& lamp : bright_sides(run.scene, mesh, problem)) {
+    const PatchRange patches = mesh.patches_on(lamp.side.polygon, lamp.side.side);
+    const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
+    const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
+    if (is_apart || known.rows.directed[patches.begin] != 0) continue;
+    lamps.push_back(patches);
+    pieces += piece_count(run.scene, lamp.side);
+  }
+  if (pieces > 64)
+    throw InputError("given.ray_rows",
+                     "too many lamps were dark when these form factors were computed: " + std::to_string(lamps.size()) +
+                         "\nhint: compute them again with these lamps lit");
+  return lamps;
+}
+
+// Another lamp, whose factors are columns of their own.
+LampValues joined(const LampValues& some, const LampValues& more) {
+  LampValues all(more.rows(), some.cols() + more.cols());
+  all << some, more;
+  return all;
+}
+
+// With the factors of lamps that are bright, and were dark when the rows were traced; of all lamps where there are
+// clear faces or mirrors, which may have other colors now.
+RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
+                       const RadiosityProblem& problem) {
+  const std::vector<PatchRange> lamps = new_lamps(run, mesh, problem, known);
+  known.lamps.insert(known.lamps.end(), lamps.begin(), lamps.end());
+  LampFactors& factors = known.lamp_factors;
+  if (run.world->tracing().has_specular_faces() || !known.specular_kinds.empty()) {
+    factors = factors_of_lamps(known.lamps, run, plan, mesh);
+  } else if (!lamps.empty()) {
+    const LampFactors more = factors_of_lamps(lamps, run, plan, mesh);
+    for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
+    factors.standard_error = joined(factors.standard_error, more.standard_error);
+  }
+  return known;
+}
+
+// The irradiance by light that lamps apart send over mirrors and clear faces, which their factors do not have; empty
+// where reflections are not followed.
+DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
+                                  const std::vector<PatchRange>& lamps) {
+  if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
+  Scene scene = run.scene;
+  scene.luminaires.clear();
+  scene.sun.reset();
+  scene.sky.reset();
+  const Lighting lighting = lighting_of(scene, run.world->tracing());
+  if (!lighting.mirrors) return {};
+  std::vector<LampFace> faces;
+  for (const PatchRange& patches : lamps) {
+    const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
+    faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
+  }
+  return mirrored_irradiance(lighting, faces, mesh, options, run.observer);
+}
+
+// Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that see
+// backs most lie inside of solids, which a few rays find as well.
 RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
   const AssemblyOptions& assembly = plan.assembly;
-  constexpr int packets = 32;
-  constexpr int to_backs_of_many = 64;
   return {.rays = assembly.rays,
           .areas = important_areas(mesh, plan.goal.get()),
-          .toward_bright = std::max(1, assembly.rays / (2 * packets)) * packets,
-          .lost_share_rays = takes_few_rays(plan, mesh.size()) ? std::min(assembly.lost_share_rays, to_backs_of_many)
-                                                               : assembly.lost_share_rays,
+          .toward_bright = std::max(1, assembly.rays / 64) * 32,
+          .lost_share_rays =
+              takes_few_rays(plan, mesh.size()) ? std::min(assembly.lost_share_rays, 64) : assembly.lost_share_rays,
           .seed = assembly.seed};
 }
 
@@ -42,43 +147,15 @@ int times_for_all(const Known& known) {
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(mean)));
 }
 
-Plan with_rays_to_lamps(Plan plan, const Known& known) {
-  plan.assembly.rays *= times_for_all(known);
-  return plan;
-}
-
 // H = F_lamps E_lamps for factors of one value per patch and lamp.
 Field irradiance_by(const LampValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
 }
 
-}  // namespace
-
-Field emitted_in_rows(const RayLight& light) {
-  Field exitance = light.lit.problem.exitance;
-  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
-    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
-  return exitance;
-}
-
-Field direct_of(const RayLight& light) {
-  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
-  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
-    if (more->size() > 0) direct += *more;
-  return direct;
-}
-
-namespace {
-
 // The light of the lamps apart, as means over whole patches.
 RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
-  RayLight light{.lit = std::move(lit),
-                 .is_apart = {},
-                 .by_lamps = {},
-                 .lamp_standard_error = {},
-                 .in_mirrors = {},
-                 .distance = {},
-                 .is_missed = {}};
+  RayLight light;
+  light.lit = std::move(lit);
   const RadiosityProblem& problem = light.lit.problem;
   light.is_apart.assign(patches, 0);
   Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
@@ -93,13 +170,12 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
   return light;
 }
 
-// What the light makes bright.
 BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
   const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
   return {mesh, summed_over_bands(expected), bright, run.world->between_patches()};
 }
 
-// Rows, with rays towards that.
+// Rows, with rays towards bright patches.
 TracedRows traced_rows(const Run& run, const Plan& plan, const PatchMesh& mesh, const RayLight& light,
                        const Known& known) {
   const Occluder& occluder = run.world->between_patches();
@@ -119,7 +195,7 @@ std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>&
   for (PolygonIndex p = 0; p < now.size(); ++p) {
     for (std::size_t side = 0; side < 2; ++side) {
       const double before = then.empty() ? 0 : then[p][side];
-      // From what lets nothing go on any more, rays that do count nothing.
+      // Rays that went on from a face that lets nothing go on now count nothing.
       if (now[p][side] != 0 && now[p][side] != before) return p;
     }
   }
@@ -139,16 +215,49 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
                        "'); only colors may change\nhint: compute them again: patchlight form-factors MODEL -o FOLDER");
 }
 
+Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
+  return all.size() > 0 ? Field(all(Eigen::all, bands)) : Field(all.rows(), 0);
+}
+
 }  // namespace
+
+std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                  const Tracing& tracing) {
+  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_faces();
+  std::vector<LampSide> apart;
+  std::size_t pieces = 0;
+  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
+    pieces += piece_count(scene, lamp.side);
+    if (pieces > (mirrors ? 64U : 16U)) break;
+    apart.push_back(lamp.side);
+  }
+  return apart;
+}
+
+Field emitted_in_rows(const RayLight& light) {
+  Field exitance = light.lit.problem.exitance;
+  for (Eigen::Index i = 0; i < exitance.rows(); ++i)
+    if (light.is_apart[static_cast<std::size_t>(i)] != 0) exitance.row(i) = 0;
+  return exitance;
+}
+
+Field direct_of(const RayLight& light) {
+  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
+  for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
+    if (more->size() > 0) direct += *more;
+  return direct;
+}
 
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit = lit_problem(run, plan, mesh, area, known);
+  Plan to_lamps = plan;
+  to_lamps.assembly.rays *= times_for_all(known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
   RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_lamps(run, with_rays_to_lamps(plan, known), mesh, lit.problem);
+                                  : traced_lamps(run, to_lamps, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
-  // What this errs counts with the rows.
+  // Its error counts with the rows.
   LightingOptions over_mirrors = lighting_options(plan, mesh);
   over_mirrors.seed = seed_on(known, over_mirrors.seed);
   over_mirrors.doublings = known.more_rays.of_rows;
@@ -169,19 +278,9 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   return {std::move(exchange), std::move(light)};
 }
 
-namespace {
-
-Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
-  Field columns(all.rows(), static_cast<Eigen::Index>(all.size() > 0 ? bands.size() : 0));
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = all.col(bands[static_cast<std::size_t>(k)]);
-  return columns;
-}
-
-}  // namespace
-
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
                            const Plan& plan, const PatchMesh& mesh) {
-  // 1. What lamps send straight, also through clear faces.
+  // 1. Light straight from lamps, also through clear faces.
   ExchangeAndLight found{all.exchange, {}};
   found.exchange.lamp_factors = factors_of_lamps(all.exchange.lamps, part, plan, mesh);
 
@@ -197,10 +296,6 @@ ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen:
   found.light.is_missed = light.is_missed;
   found.light.rays_per_patch = light.rays_per_patch;
   return found;
-}
-
-RayExchange trace_ray_exchange(const Run& run, const Plan& plan, const PatchMesh& mesh) {
-  return exchange_and_light(run, plan, mesh).exchange;
 }
 
 }  // namespace patchlight

@@ -1,13 +1,11 @@
 #include "pipeline/expected_cost.h"
 
-#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/direct_irradiance.h"
-#include "pipeline/lit_problem.h"
-#include "pipeline/second_mesh.h"
+#include "pipeline/problem_of.h"
 #include "plan/memory.h"
 #include "plan/planned_scene.h"
 #include "transport/pair_sampler.h"
@@ -21,20 +19,14 @@
 namespace patchlight {
 namespace {
 
-constexpr std::size_t most_samples = 1024;
-constexpr std::size_t samples_at_once = 64;
-
-// Where rays are that slow, fewer samples tell as well.
-constexpr double most_seconds = 2;
-
-// Two clusters of so many, each pair as likely as any other; of the lower number first.
+// Two clusters of so many, each pair as likely as any other; the lower number first.
 ClusterPair random_pair(std::size_t clusters, std::uint32_t sample) {
   const std::size_t a = hash({sample, 0}) % clusters;
   const std::size_t b = hash({sample, 1}) % clusters;
   return {std::min(a, b), std::max(a, b)};
 }
 
-// What assembly does for two clusters; their exchange areas summed up, so that none can be left out.
+// The work of assembly for two clusters; their exchange areas summed up, so that none can be left out.
 double find(const ClusterPairs& pairs, const ClusterPair& pair) {
   const PairClass pair_class = pairs.class_of(pair);
   if (pair_class == PairClass::averted || pair_class == PairClass::hidden) return 0;
@@ -58,14 +50,14 @@ double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder
   const ClusterPairs pairs(mesh, occluder, options);
   const std::size_t clusters = pairs.clusters().size();
   const double all = static_cast<double>(clusters) * static_cast<double>(clusters + 1) / 2;
-  const std::size_t samples = std::min(most_samples, static_cast<std::size_t>(all));
+  const std::size_t samples = std::min<std::size_t>(1024, static_cast<std::size_t>(all));
   if (samples == 0) return 0;
   std::vector<double> sums(samples);
   const double start = cpu_seconds();
   double seconds = 0;
   std::size_t done = 0;
-  while (done < samples && seconds < most_seconds) {
-    const std::size_t count = std::min(samples_at_once, samples - done);
+  while (done < samples && seconds < 2) {  // where rays are slow fewer samples do
+    const std::size_t count = std::min<std::size_t>(64, samples - done);
     parallel_for(count, [&](std::size_t k) {
       sums[done + k] = find(pairs, random_pair(clusters, static_cast<std::uint32_t>(done + k)));
     });
@@ -74,26 +66,6 @@ double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder
   }
   return seconds * all / static_cast<double>(done);
 }
-
-// Processor seconds on one core of an AMD EPYC.
-constexpr double seconds_per_hemisphere_ray = 2.5e-7;
-constexpr double seconds_per_light_ray = 2.2e-7;  // 0.9 s for 3,980 patches and 1,024 rays
-
-// docs/benchmarks/speed.md, of 32,000 to a million patches.
-constexpr double seconds_per_row_of_rays = 1.2e-4;
-constexpr double seconds_of_solution_by_rays = 1.6e-5;  // per patch, with last gather and smoothing
-
-// Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
-constexpr double products_of_closure = 100;
-constexpr double products_of_solver = 15;
-constexpr double seconds_per_entry = 1.1e-10;
-
-// A sensor sends four rays to each patch before it, some thousands more to all together, and by daylight, which comes
-// through few openings, many more: of 500 to 1,600 sensors in the Cornell box and two rooms (1,900 to 19,000 patches),
-// a duplex and a house (docs/benchmarks/real-models.md; 2,900 to 41,000).
-constexpr double seconds_per_sensor = 1.2e-3;
-constexpr double seconds_per_patch_of_sensor = 3.4e-7;
-constexpr double seconds_per_sensor_by_daylight = 1.4e-2;
 
 // The share of all rows that are those of lamps, by area.
 double area_of_lamps(const Scene& scene, const Plan& plan, const PatchMesh& mesh) {
@@ -115,17 +87,20 @@ double assembly_seconds(const Scene& scene, const Plan& plan, const PatchMesh& m
   return lamps_alone ? 2 * of_matrix * area_of_lamps(scene, plan, mesh) : of_matrix;
 }
 
-double rays_per_patch(const Scene& scene, const Plan& plan) {
+// Processor seconds of a patch, whose rays take 0.22 microseconds each.
+double seconds_of_direct_light(const Scene& scene, const Plan& plan) {
   double rays = 0;
   if (simulates(plan, Effect::luminaires)) rays += 64.0 * static_cast<double>(scene.luminaires.size());
   if (scene.sun && simulates(plan, Effect::sun)) rays += 64;
   if (scene.sky && simulates(plan, Effect::sky)) rays += LightingOptions{}.sky_samples;
-  return rays;
+  return 2.2e-7 * rays;
 }
 
+// A sensor sends four rays to each patch before it, some thousands more to all together, and by daylight, which comes
+// through few openings, many more: measured in models of docs/benchmarks/real-models.md.
 double seconds_of_a_sensor(const Scene& scene, const Plan& plan, double patches) {
   const bool by_day = (scene.sky && simulates(plan, Effect::sky)) || (scene.sun && simulates(plan, Effect::sun));
-  return seconds_per_sensor + seconds_per_patch_of_sensor * patches + (by_day ? seconds_per_sensor_by_daylight : 0);
+  return 1.2e-3 + 3.4e-7 * patches + (by_day ? 1.4e-2 : 0);
 }
 
 }  // namespace
@@ -138,19 +113,18 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
   cost.sensor_seconds = seconds_of_a_sensor(scene, plan, n) * static_cast<double>(cost.sensors);
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   cost.threads = plan.resources.threads > 0 ? plan.resources.threads : std::max(1, processors);
+  cost.direct_light_seconds = seconds_of_direct_light(scene, plan) * n;
 
+  // The rates are those of one core of an AMD EPYC, docs/benchmarks/speed.md.
   if (plan.assembly.storage == Storage::rays) {
-    cost.form_factor_seconds = seconds_per_row_of_rays * n * plan.assembly.rays / AssemblyOptions().rays;
-    cost.solve_seconds = seconds_of_solution_by_rays * n;
-    cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
+    cost.form_factor_seconds = 1.2e-4 * n * plan.assembly.rays / AssemblyOptions().rays;
+    cost.solve_seconds = 1.6e-5 * n;  // with last gather and smoothing
     return cost;
   }
-  cost.form_factor_seconds =
-      assembly_seconds(scene, plan, mesh) + seconds_per_hemisphere_ray * plan.assembly.lost_share_rays * n;
-  cost.direct_light_seconds = seconds_per_light_ray * rays_per_patch(scene, plan) * n;
-  const bool solves = simulates(plan, Effect::interreflection);
-  const double products = (plan.assembly.close ? products_of_closure : 0) + (solves ? products_of_solver : 0);
-  cost.solve_seconds = seconds_per_entry * products * n * n;
+  cost.form_factor_seconds = assembly_seconds(scene, plan, mesh) + 2.5e-7 * plan.assembly.lost_share_rays * n;
+  // Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
+  const double products = (plan.assembly.close ? 100 : 0) + (simulates(plan, Effect::interreflection) ? 15 : 0);
+  cost.solve_seconds = 1.1e-10 * products * n * n;
   return cost;
 }
 

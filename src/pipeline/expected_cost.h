@@ -8,7 +8,7 @@
 
 namespace patchlight {
 
-/// What a run is expected to take, told before it begins.
+/// The estimated cost of a run, before it begins.
 struct ExpectedCost {
   std::size_t patches = 0;
   double bytes = 0;                 ///< of memory, at the peak

@@ -4,6 +4,7 @@
 
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "visibility/occluder.h"
@@ -14,9 +15,6 @@
 
 namespace patchlight {
 namespace {
-
-// A patch is covered when every one of sixteen places on it is.
-constexpr int rays_for_cover = 128;
 
 // The surroundings of the goal are cut after it, as parents where there are some.
 NestedMesh nested_as_planned(const Plan& plan, const auto& patches_with_edge) {
@@ -40,7 +38,7 @@ PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, co
   if (plan.contacts.on.empty()) return mesh;
   // Only where faces touch can others be covered. The rest counts as known: open.
   LostShare open;
-  open.rays_per_patch = rays_for_cover;
+  open.rays_per_patch = 128;  // a patch is covered when every one of sixteen places on it is
   open.escaped = open.at_backs = open.covered = open.dark = open.overlaid = Eigen::VectorXd::Zero(1);
   std::vector<PatchIndex> place(mesh.size(), 0);
   bool any = false;

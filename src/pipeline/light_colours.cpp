@@ -2,19 +2,16 @@
 
 #include "accuracy/spaces.h"
 #include "light/photometry.h"
-#include "pipeline/lit_problem.h"
+#include "pipeline/local_cuts.h"
 #include "pipeline/mesh_transport.h"
 #include "pipeline/problem_of.h"
-#include "pipeline/second_mesh.h"
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -27,11 +24,11 @@ struct IntoBands {
   void put(Field& into, const Field& from) const {
     if (from.size() == 0) return;
     if (into.size() == 0) into = Field::Zero(from.rows(), all);
-    for (Eigen::Index k = 0; k < from.cols(); ++k) into.col(bands[static_cast<std::size_t>(k)]) = from.col(k);
+    into(Eigen::all, bands) = from;
   }
   void put(Eigen::ArrayXd& into, const Eigen::ArrayXd& from) const {
     if (into.size() == 0) into = Eigen::ArrayXd::Zero(all);
-    for (Eigen::Index k = 0; k < from.size(); ++k) into[bands[static_cast<std::size_t>(k)]] = from[k];
+    into(bands) = from;
   }
 };
 
@@ -52,7 +49,7 @@ Iteration worst(Iteration a, const Iteration& b) {
   return a;
 }
 
-// Step by step; what has ended stays as it is.
+// Step by step; an iteration that has ended keeps its last step.
 std::vector<Iteration> worst(std::vector<Iteration> a, const std::vector<Iteration>& b) {
   if (a.empty() || b.empty()) return a.empty() ? b : a;
   const std::size_t steps = std::max(a.size(), b.size());
@@ -62,10 +59,8 @@ std::vector<Iteration> worst(std::vector<Iteration> a, const std::vector<Iterati
 }
 
 void put_solution(Solution& into, const Solution& from, const IntoBands& bands, bool is_first) {
-  bands.put(into.radiosity, from.radiosity);
-  bands.put(into.irradiance, from.irradiance);
-  bands.put(into.direct_irradiance, from.direct_irradiance);
-  bands.put(into.error, from.error);
+  for (const auto field : {&Solution::radiosity, &Solution::irradiance, &Solution::direct_irradiance, &Solution::error})
+    bands.put(into.*field, from.*field);
   into.history = worst(std::move(into.history), from.history);
   into.converged = from.converged && (is_first || into.converged);
   into.stopped = into.stopped || from.stopped;
@@ -74,23 +69,18 @@ void put_solution(Solution& into, const Solution& from, const IntoBands& bands, 
 }
 
 void put_balance(EnergyBalance& into, const EnergyBalance& from, const IntoBands& bands) {
-  bands.put(into.emitted, from.emitted);
-  bands.put(into.arriving, from.arriving);
-  bands.put(into.absorbed, from.absorbed);
-  bands.put(into.escaped, from.escaped);
-  bands.put(into.lost_at_backs, from.lost_at_backs);
-  bands.put(into.defect, from.defect);
+  for (const auto flux : {&EnergyBalance::emitted, &EnergyBalance::arriving, &EnergyBalance::absorbed,
+                          &EnergyBalance::escaped, &EnergyBalance::lost_at_backs, &EnergyBalance::defect})
+    bands.put(into.*flux, from.*flux);
   into.imbalance = std::max(into.imbalance, from.imbalance);
 }
 
 void put_bars(std::optional<ErrorBars>& into, const std::optional<ErrorBars>& from, const IntoBands& bands) {
   if (!from) return;
   if (!into) into.emplace();
-  bands.put(into->mesh, from->mesh);
-  bands.put(into->mesh_noise, from->mesh_noise);
-  bands.put(into->form_factor, from->form_factor);
-  bands.put(into->solver, from->solver);
-  bands.put(into->display, from->display);
+  for (const auto bar :
+       {&ErrorBars::mesh, &ErrorBars::mesh_noise, &ErrorBars::form_factor, &ErrorBars::solver, &ErrorBars::display})
+    bands.put((*into).*bar, (*from).*bar);
 }
 
 void add(Eigen::VectorXd& sum, double weight, const Eigen::VectorXd& part) {
@@ -99,14 +89,12 @@ void add(Eigen::VectorXd& sum, double weight, const Eigen::VectorXd& part) {
   sum += weight * part;
 }
 
-// What has one number per patch.
+// Adds the facts with one number per patch.
 void add_facts(TransportFacts& sum, double weight, const TransportFacts& part) {
   add(sum.row_sum, weight, part.row_sum);
-  add(sum.lost.escaped, weight, part.lost.escaped);
-  add(sum.lost.at_backs, weight, part.lost.at_backs);
-  add(sum.lost.covered, weight, part.lost.covered);
-  add(sum.lost.dark, weight, part.lost.dark);
-  add(sum.lost.overlaid, weight, part.lost.overlaid);
+  for (const auto share :
+       {&LostShare::escaped, &LostShare::at_backs, &LostShare::covered, &LostShare::dark, &LostShare::overlaid})
+    add(sum.lost.*share, weight, part.lost.*share);
   sum.lost.rays_per_patch = part.lost.rays_per_patch;
   sum.lost.doublings = part.lost.doublings;
   sum.counts.shadow_rays += part.counts.shadow_rays;
@@ -115,23 +103,15 @@ void add_facts(TransportFacts& sum, double weight, const TransportFacts& part) {
 
 void add_effects(SolvedMesh& sum, const SolvedMesh& part) {
   sum.interest = part.interest;
-  add(sum.effects, 1, part.effects);
-  add(sum.noise, 1, part.noise);
-  add(sum.row_noise, 1, part.row_noise);
-  add(sum.light_noise, 1, part.light_noise);
+  for (const auto effect : {&SolvedMesh::effects, &SolvedMesh::noise, &SolvedMesh::row_noise, &SolvedMesh::light_noise})
+    add(sum.*effect, 1, part.*effect);
   sum.share_cuts_mend = std::max(sum.share_cuts_mend, part.share_cuts_mend);
   sum.noise_bar = std::max(sum.noise_bar, part.noise_bar);
   sum.light_bar = std::max(sum.light_bar, part.light_bar);
 }
 
-double luminous_weight(const Spectrum& shares, const std::vector<Eigen::Index>& of) {
-  double weight = 0;
-  for (const Eigen::Index band : of) weight += shares[band];
-  return weight;
-}
-
-// The solution in all bands of a run from those in each colour, one each: columns next to each other; of what has one
-// number for all bands the mean by luminance, of errors and counts of iterations the worst.
+// The solution in all bands of a run from those in each color: columns next to each other, means by luminance of
+// numbers for all bands, and the worst errors and counts of iterations.
 SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
                   std::vector<SolvedMesh> parts) {
   SolvedMesh all{{}, meshed.mesh};
@@ -145,10 +125,10 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
   const Spectrum shares = luminous_shares(bands);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     add_effects(all, parts[k]);
-    // Whole patches have the same area in all colours, what they hold of them has not.
+    // Whole patches have the same area in all colors; their held parts have not.
     const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].world->planned_scene());
     const IntoBands columns{colours[k].bands, static_cast<Eigen::Index>(bands.size())};
-    const double weight = luminous_weight(shares, colours[k].bands);
+    const double weight = shares(colours[k].bands).sum();
     put_problem(into.problem, part.problem, columns);
     add(into.problem.area, weight, part.problem.area);
     put_solution(into.solution, part.solution, columns, k == 0);
@@ -168,7 +148,7 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
   return all;
 }
 
-// The spectra of all that is clear or a mirror.
+// The spectra of all clear faces and mirrors.
 std::vector<Spectrum> specular_spectra(const Scene& scene, Reflections reflections) {
   std::set<MaterialIndex> clear, mirrors;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -203,11 +183,10 @@ std::vector<std::vector<Eigen::Index>> alike_bands(const std::vector<Spectrum>& 
   return groups;
 }
 
-// What a plan says of single bands.
+// A plan for some of its bands.
 Plan in_bands(Plan plan, const std::vector<Eigen::Index>& bands) {
   if (plan.lamp_colour.size() == 0) return plan;
-  Spectrum chosen(static_cast<Eigen::Index>(bands.size()));
-  for (Eigen::Index k = 0; k < chosen.size(); ++k) chosen[k] = plan.lamp_colour[bands[static_cast<std::size_t>(k)]];
+  const Spectrum chosen = plan.lamp_colour(bands);
   plan.lamp_colour = (chosen > 0).any() ? chosen : Spectrum();
   return plan;
 }

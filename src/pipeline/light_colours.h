@@ -1,7 +1,6 @@
 #pragma once
 
 #include "pipeline/run.h"
-#include "pipeline/stage_clock.h"
 
 #include <Eigen/Core>
 #include <memory>

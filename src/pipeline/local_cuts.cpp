@@ -1,30 +1,54 @@
 #include "pipeline/local_cuts.h"
 
 #include "accuracy/refinement.h"
+#include "base/rounded.h"
 #include "base/sampling.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "pipeline/error_goals.h"
 #include "plan/goal.h"
+#include "plan/memory.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Shares of an error that the mesh, the rays of rows and those to lights may have, in quadrature, where all have some.
-constexpr double share_to_mesh = 0.7;
+// The mesh's share of an error, in quadrature: beside form factors, or rays of rows and to lights, and the solver.
+constexpr double share_of_mesh = 0.7;
+
+// The largest that one error may be while the others stay: the rest of the accuracy, but no less than its share.
+double allowed(double accuracy, double share, double others) {
+  return std::max(share * accuracy, std::sqrt(std::max(0.0, accuracy * accuracy - others * others)));
+}
+
+int next_samples(const Plan& plan, double factor) {
+  const int samples = samples_of(plan.assembly);
+  const double needed = samples * factor * factor;
+  int next = samples;
+  while (next < needed && next < most_samples(plan)) next = std::min(2 * next, most_samples(plan));
+  return std::max(samples, next);
+}
+
+// The largest that the error by samples may be while all else stays: mesh, solver, and the rest of the form factors'
+// error.
+double allowed_noise(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double noise = solved.noise_bar;
+  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - noise * noise));
+  return allowed(accuracy, 0.6, std::hypot(step.mesh, step.solver, beside));
+}
+
+// The share of an error that the rays of rows, and those to lights, may have, in quadrature.
 constexpr double share_to_rays = 0.5;
 
-// So often rays of a patch are doubled at once, and before they are more than are worth their time.
-constexpr int most_doublings_at_once = 4;
-
-// What at(x) does more of the larger x is, between two limits: the least of it that leaves `wanted`, or, where that
-// is_allowed() no more, the most of it that is.
+// at(x) grows with x, between two limits: the least of it that leaves `wanted`, or, where that is not allowed, the most
+// of it that is.
 auto least_that_leaves(double wanted, double low, double high, const auto& at, const auto& is_allowed) {
   low = std::log(low), high = std::log(high);
   for (int step = 0; step < 50; ++step) {
@@ -36,7 +60,7 @@ auto least_that_leaves(double wanted, double low, double high, const auto& at, c
   return is_allowed(more) ? more : at(std::exp(low));
 }
 
-// How often the patches of each parent are cut, what that takes, and what it leaves.
+// How often the patches of each parent are cut, the patches that it takes, and the squared error that it leaves.
 struct Cuts {
   std::vector<std::uint8_t> of_parent;
   double new_patches = 0;
@@ -77,7 +101,7 @@ struct Noise {
 };
 
 // How often the rays of each patch are doubled, which ones more often than before, how many more rays that are, as a
-// share of all, and what it leaves.
+// share of all, and the squared error that it leaves.
 struct Doublings {
   std::vector<std::uint8_t> of_patch;
   std::vector<std::uint8_t> is_doubled;
@@ -93,7 +117,7 @@ Doublings doublings_down_to(double least, int most, const Noise& noise) {
   for (std::size_t i = 0; i < noise.rays.size(); ++i) {
     double square = noise.squares[i];
     double rays = noise.rays[i];
-    const int left = std::min(most_doublings_at_once, most - noise.doubled[i]);
+    const int left = std::min(4, most - noise.doubled[i]);
     int times = 0;
     for (; times < left && square > least * rays; ++times) square /= 2, rays *= 2;
     doublings.of_patch.push_back(static_cast<std::uint8_t>(noise.doubled[i] + times));
@@ -140,7 +164,7 @@ Noise noise_on(const FinerMesh& finer, const NestedMesh& before, const Eigen::Ve
   return noise;
 }
 
-// What rays err, the square of it that may be left, by how much they may grow, and how often they may be doubled.
+// The error by rays, the square of it that may be left, by how much they may grow, and how often they may be doubled.
 struct NoiseGoal {
   double error = 0;
   double wanted = 0;
@@ -158,7 +182,7 @@ Doublings best_doublings(Noise noise, const NoiseGoal& goal) {
                            [&](const Doublings& doublings) { return doublings.more_rays <= goal.more_rays; });
 }
 
-// Parents' parts in the squared error by the mesh that cuts mend.
+// Parents' parts in the squared error by the mesh that cuts reduce.
 Eigen::VectorXd squares_of(const SolvedMesh& solved, double error, bool of_lamps) {
   const double sum = solved.effects.cwiseMax(0).sum();
   if (!(sum > 0)) return Eigen::VectorXd::Zero(solved.effects.size());
@@ -180,19 +204,78 @@ double allowed_square(double error, double share, double others) {
   return std::pow(allowed(error, share, std::sqrt(others)), 2);
 }
 
+// No second mesh reduces a smaller error.
+constexpr double usual_error = 0.02;
+
+// The goal of a second mesh. Rays of rows cost less than those to sun and sky, which are more.
+constexpr LocalGoal goal_of_second_mesh{
+    .error = usual_error / error_margin, .new_patches = 0.25, .more_to_lights = 0.5, .more_of_rows = 1.5};
+
+std::string errors_of_first(const AccuracyStep& errors) {
+  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
+         " %: ";
+}
+
+Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
+  const auto is_doubled = [&](std::size_t i) {
+    const auto any = [i](const std::vector<std::uint8_t>& doublings) { return !doublings.empty() && doublings[i] > 0; };
+    return any(next.known.more_rays.to_lights) || any(next.known.more_rays.of_rows);
+  };
+  const std::size_t cut = errors.patches - number_kept(next.known.place);
+  std::size_t doubled = 0;
+  for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
+  const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
+  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "on a second one " + cuts +
+                                            (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
+                                            "; accuracy.local_cuts=false stays with the first"}};
+}
+
+Diagnostics notes_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
+  const std::size_t patches = cuts.mesh.mesh.patches.size();
+  const double bytes = memory_of_next_mesh(patches, times_the_rays(cuts), plan);
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
+                                            " patches, would err less and is not made, as it " +
+                                            memory_refused(bytes, plan.resources)}};
+}
+
 }  // namespace
+
+int most_samples(const Plan& plan) { return plan.assembly.storage == Storage::rays ? 4096 : 256; }
+
+double patches_for(double patches, double factor) { return patches * std::pow(std::max(1.0, factor), 2 / mesh_order); }
+
+double mesh_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  const double lights = solved.light_bar;
+  const double beside = std::sqrt(std::max(0.0, step.form_factor * step.form_factor - lights * lights));
+  return error_margin * std::hypot(step.mesh, lights) /
+         allowed(accuracy, share_of_mesh, std::hypot(beside, step.solver));
+}
+
+double noise_factor(const SolvedMesh& solved, const AccuracyStep& step, double accuracy) {
+  return error_margin * solved.noise_bar / allowed_noise(solved, step, accuracy);
+}
+
+int samples_for(const SolvedMesh& solved, const AccuracyStep& step, double accuracy, const Plan& plan) {
+  const int samples = samples_of(plan.assembly);
+  if (plan.assembly.storage != solved.simulation.plan.assembly.storage) return samples;
+  if (mesh_factor(solved, step, accuracy) > 1.5) return samples;
+  const double patches = patches_for(step.patches, mesh_factor(solved, step, accuracy));
+  const double factor = noise_factor(solved, step, accuracy) * std::sqrt(step.patches / patches);
+  return factor > error_margin ? next_samples(plan, factor) : samples;
+}
 
 LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const LocalGoal& goal) {
   const double by_lights = solved.light_bar * solved.light_bar;
   const double by_rows = solved.noise_bar * solved.noise_bar;
 
-  // 1. Patches where their size errs.
+  // 1. Patches by the errors of their size.
   const Eigen::VectorXd squares = squares_of(solved, std::sqrt(solved.share_cuts_mend) * errors.mesh, goal.cuts_lamps);
-  const Cuts cuts = best_cuts(solved.mesh, squares, allowed_square(goal.error, share_to_mesh, by_lights + by_rows),
+  const Cuts cuts = best_cuts(solved.mesh, squares, allowed_square(goal.error, share_of_mesh, by_lights + by_rows),
                               goal.new_patches * solved.mesh.patches.size());
   FinerMesh finer = cut_patches(solved.mesh, cuts.of_parent);
 
-  // 2. Rays where they do.
+  // 2. Rays by theirs.
   const int most = doublings_worth_it(solved.simulation.plan);
   const auto doublings = [&](const Eigen::VectorXd& noise, const std::vector<std::uint8_t>& before,
                              const NoiseGoal& noise_goal) {
@@ -206,7 +289,7 @@ LocalCuts local_cuts(const SolvedMesh& solved, const AccuracyStep& errors, const
   Doublings of_rows =
       doublings(solved.row_noise, solved.more_rays.of_rows, {solved.noise_bar, rows_may, goal.more_of_rows, most});
 
-  // 3. What that takes and gains.
+  // 3. Its cost and gain.
   LocalCuts found{std::move(finer), {}, {}, 0, cuts.new_patches > 0 || to_lights.any || of_rows.any};
   found.gain =
       squares.sum() - cuts.squared_error + by_lights - to_lights.squared_error + by_rows - of_rows.squared_error;
@@ -229,6 +312,42 @@ MeshToSolve mesh_with(LocalCuts cuts, SolvedMesh& solved) {
   next.known.light_place = std::move(cuts.light_place);
   next.known.more_rays = std::move(cuts.more_rays);
   return next;
+}
+
+bool makes_second_mesh(const Plan& plan, PatchIndex patches) {
+  const AccuracyOptions& accuracy = plan.accuracy;
+  return accuracy.local_cuts && accuracy.error_bars && !refines(accuracy) && plan.assembly.storage == Storage::rays &&
+         patches <= 100'000;  // with more a second mesh takes minutes
+}
+
+bool makes_second_mesh(const Run& run, PatchIndex patches) {
+  return makes_second_mesh(run.plan, patches) && !run.with.mesh && !run.with.ray_exchange && !run.with.solve;
+}
+
+bool cuts_locally(const Run& run, PatchIndex patches) {
+  return refines(run.plan.accuracy) || makes_second_mesh(run, patches);
+}
+
+SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& errors) {
+  if (!makes_second_mesh(run, errors.patches) || !(errors.total > usual_error)) return {};
+  LocalCuts cuts = local_cuts(solved, errors, goal_of_second_mesh);
+  // It pays where it leaves less than 0.7 of the error.
+  if (!(cuts.gain > (1 - 0.7 * 0.7) * errors.total * errors.total)) return {};
+  const Plan& plan = solved.simulation.plan;
+  if (!fits_as_next_mesh(cuts.mesh.mesh.patches.size(), times_the_rays(cuts), plan))
+    return {std::nullopt, notes_on_memory(cuts, errors, plan)};
+  MeshToSolve mesh = mesh_with(std::move(cuts), solved);
+  Diagnostics notes = notes_on_cuts(mesh, errors);
+  return {std::move(mesh), std::move(notes)};
+}
+
+Plan with_note_on_second_mesh(Plan plan, PatchIndex patches) {
+  if (!makes_second_mesh(plan, patches) || fits_as_next_mesh(patches, 1, plan)) return plan;
+  plan.notes.push_back({DiagnosticCode::second_mesh,
+                        "a second mesh, which is made where the first errs by more than " + percent(usual_error) +
+                            " %, does not fit into the memory beside the first: it " +
+                            memory_refused(memory_of_next_mesh(patches, 1, plan), plan.resources)});
+  return plan;
 }
 
 }  // namespace patchlight

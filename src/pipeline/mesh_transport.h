@@ -10,7 +10,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace patchlight {
 
@@ -21,21 +20,6 @@ struct RayTransportAndLight {
 
 /// Rows and light in the colour of a run, as means over what is exposed of each patch.
 RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found);
-
-/// A solution by rows of rays, the standard error of its irradiance, and the part of the error that patches have in
-/// common, W/m^2.
-struct RaySolution {
-  Solution solution;
-  Field standard_error;
-  std::vector<Field> correlated_errors;  ///< Simulation::correlated_errors
-};
-
-/// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
-/// half of the rays, and smooths the light from other patches: docs/theory/ray-method-solution.md. The error combines
-/// the difference of the halves, the error of the row sums, which both halves share, the bias of smoothing, and the
-/// reflections of all of these. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
-RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
-                            const RayLight& light, const TransportFacts& facts, const SolverOptions& options);
 
 /// Exchange areas S_ij = A_i F_ij of a mesh before closure; with rows on demand there are none.
 struct RawTransport {
@@ -61,12 +45,11 @@ LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTran
 
 /// All pairs, with visibility from shadow rays, unless Steps::exchange knows them; and the share of each patch's
 /// hemisphere from which no patch is seen. With rows on demand (AssemblyOptions::storage) the lost shares alone: the
-/// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars what is known of the
-/// mesh before is taken over; without them `known` is not looked at, and the rate of bare rays is measured. \throws
-/// Cancelled.
+/// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars exchange areas and
+/// lost shares that are `known` are taken over; without them the rate of bare rays is measured. \throws Cancelled.
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known);
 
-/// That of rows of rays which are known.
+/// The same from rows of rays which are known.
 RawTransport raw_transport(RayTransportAndLight by_rays);
 
 /// The same after closure: each row sums up to what its patch sees. Without AssemblyOptions::close the rows are as they

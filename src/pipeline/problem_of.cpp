@@ -1,13 +1,113 @@
 #include "pipeline/problem_of.h"
 
+#include "base/parallel.h"
+#include "base/sampling.h"
+#include "base/streams.h"
+#include "light/texture.h"
+#include "lighting/mirrored_irradiance.h"
 #include "mesh/nested_mesh.h"
-#include "pipeline/textured_patches.h"
+#include "mesh/small_patches.h"
+#include "plan/goal.h"
 #include "plan/planned_scene.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace patchlight {
+namespace {
+
+// The patches of each material that lie in its picture.
+std::vector<std::vector<PatchIndex>> textured_patches(const Scene& scene, const PatchMesh& mesh) {
+  std::vector<std::vector<PatchIndex>> patches(scene.materials.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    if (texture_map_on(scene, scene.polygons[mesh.polygon[i]], mesh.side[i])) patches[mesh.material[i]].push_back(i);
+  }
+  return patches;
+}
+
+// From areas a to areas a / f, with B, E and rho times f: the same flux. f is the share of light from all directions
+// alike that a patch holds, or its inverse.
+Simulation of_other_parts(Simulation simulation, const Scene& scene, bool whole) {
+  const SpecularFaces specular(scene, reflections_of(simulation.plan));
+  const PatchMesh& mesh = simulation.mesh;
+  RadiosityProblem& problem = simulation.problem;
+  Solution& solution = simulation.solution;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    const double held = specular.held(mesh.polygon[i], mesh.side[i]);
+    const double factor = whole ? held : 1 / held;
+    if (factor == 1) continue;
+    problem.area[i] /= factor;
+    for (Field* field : {&problem.scattering.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
+      if (field->rows() > 0) field->row(i) *= factor;
+  }
+  return simulation;
+}
+
+DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
+                                              LightingOptions options) {
+  options.areas = important_areas(mesh, plan.goal.get());
+  const auto trace = [&](const Lighting& lighting) {
+    DirectIrradiance direct = direct_irradiance(lighting, mesh, options, run.observer);
+    if (lighting.mirrors) add(direct, mirrored_irradiance(lighting, {}, mesh, options, run.observer));
+    return direct;
+  };
+  if (plan.lamp_colour.size() == 0) return trace(run.world->lighting());
+  // All light has the lamps' color, and nothing changes it on the way: all bands follow from one.
+  const DirectIrradiance found = trace(run.world->lighting_in_one_band());
+  const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
+  return {in_all(found.irradiance), in_all(found.standard_error)};
+}
+
+// Light of which some is known from the mesh before; the rest with as many more rays as are wanted.
+DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
+                                          LightingOptions options) {
+  if (!known.light) return direct_irradiance_as_planned(run, plan, mesh, options);
+  // 1. The light that is not known, on a mesh of its own, by rays that have not decided how many it takes.
+  std::vector<std::uint8_t> is_known;
+  std::vector<std::uint8_t> doublings;
+  const std::vector<std::uint8_t>& more = known.more_rays.to_lights;
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    is_known.push_back(known.light_place[i] != no_patch ? 1 : 0);
+    if (is_known.back() == 0) doublings.push_back(more.empty() ? 0 : more[i]);
+  }
+  PatchMesh whole = mesh;
+  whole.middles.clear();
+  options.usual_area = mean_area(important_areas(mesh, plan.goal.get()));
+  options.doublings = doublings;
+  options.seed = seed_on(known, options.seed);
+  const DirectIrradiance found = direct_irradiance_as_planned(run, plan, without_patches(whole, is_known), options);
+
+  // 2. With the light that is.
+  const auto joined = [&](const Field& before, const Field& now) {
+    Field all(mesh.size(), now.cols());
+    Eigen::Index next = 0;
+    for (PatchIndex i = 0; i < mesh.size(); ++i)
+      all.row(i) = is_known[i] != 0 ? before.row(known.light_place[i]) : now.row(next++);
+    return all;
+  };
+  return {joined(known.light->irradiance, found.irradiance), joined(known.light->standard_error, found.standard_error)};
+}
+
+}  // namespace
+
+Field with_textures(Field reflectance, const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<std::vector<PatchIndex>> textured = textured_patches(scene, mesh);
+  for (std::size_t m = 0; m < textured.size(); ++m) {
+    if (textured[m].empty()) continue;
+    const TexturedReflectance& surface = *scene.materials[m].texture;
+    const TextureMeans means(surface);
+    parallel_for(textured[m].size(), [&](std::size_t k) {
+      const PatchIndex i = textured[m][k];
+      const TextureMap& map = *texture_map_on(scene, scene.polygons[mesh.polygon[i]], mesh.side[i]);
+      const PatchCorners corners = mesh.corner_points(i);
+      std::array<Eigen::Vector2d, 4> places;
+      for (std::size_t c = 0; c < 4; ++c) places[c] = map.linear * corners.points[c] + map.offset;
+      const auto count = static_cast<std::size_t>(corners.count);
+      reflectance.row(i) = reflectance_of(surface, means.over(std::span(places).first(count)));
+    });
+  }
+  return reflectance;
+}
 
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back, Reflections reflections) {
@@ -43,40 +143,68 @@ Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMes
   return scattering;
 }
 
-namespace {
-
-// What patches hold of light from all directions alike.
-Eigen::ArrayXd held_shares_of(const Simulation& simulation, const Scene& scene) {
-  const SpecularFaces specular(scene, reflections_of(simulation.plan));
-  const PatchMesh& mesh = simulation.mesh;
-  Eigen::ArrayXd held(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) held[i] = specular.held(mesh.polygon[i], mesh.side[i]);
-  return held;
-}
-
-// From areas a to areas a / factor, with B, E and rho times the factor: the same flux.
-Simulation of_other_parts(Simulation simulation, const Eigen::ArrayXd& factor) {
-  RadiosityProblem& problem = simulation.problem;
-  Solution& solution = simulation.solution;
-  for (Eigen::Index i = 0; i < factor.size(); ++i) {
-    if (factor[i] == 1) continue;
-    problem.area[i] /= factor[i];
-    for (Field* field : {&problem.scattering.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
-      if (field->rows() > 0) field->row(i) *= factor[i];
-  }
-  return simulation;
-}
-
-}  // namespace
-
 Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
-  const Eigen::ArrayXd held = held_shares_of(simulation, scene);
-  return of_other_parts(std::move(simulation), held);
+  return of_other_parts(std::move(simulation), scene, true);
 }
 
 Simulation of_held_parts(Simulation simulation, const Scene& scene) {
-  const Eigen::ArrayXd held = held_shares_of(simulation, scene);
-  return of_other_parts(std::move(simulation), 1 / held);
+  return of_other_parts(std::move(simulation), scene, false);
+}
+
+bool takes_few_rays(const Plan& plan, PatchIndex patches) {
+  return patches > many_patches || (refines(plan.accuracy) && plan.assembly.storage == Storage::rays);
+}
+
+std::uint64_t seed_on(const Known& known, std::uint64_t seed) {
+  return known.meshes == 0 ? seed : hash({seed, stream::later_meshes, known.meshes});
+}
+
+LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh) {
+  LightingOptions options{.seed = plan.assembly.seed};
+  if (takes_few_rays(plan, mesh.size())) options.mirrored_samples = 16;
+  return options;
+}
+
+LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
+                       const Known& known) {
+  LitProblem lit{problem_of(run.scene, mesh, exposed_area, plan.sides.emit_from_back, reflections_of(plan)), {}};
+  if (!has_point_or_daylight(run.scene)) return lit;
+  DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, lighting_options(plan, mesh));
+  lit.problem.direct_irradiance = std::move(direct.irradiance);
+  lit.direct_standard_error = std::move(direct.standard_error);
+  lit.doublings = known.more_rays.to_lights;
+  return lit;
+}
+
+DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mesh, const LostShare& lost,
+                                   const Eigen::VectorXd& exposed_area, std::span<const std::uint8_t> doublings) {
+  if (direct.irradiance.size() == 0) return direct;
+  const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exposed_area);
+  direct.irradiance.colwise() *= factor;
+  direct.standard_error.colwise() *= factor;
+  direct.standard_error = with_errors_around(mesh, exposed_area, direct.standard_error, doublings);
+  return direct;
+}
+
+LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost) {
+  RadiosityProblem& problem = lit.problem;
+  DirectIrradiance direct{std::move(problem.direct_irradiance), std::move(lit.direct_standard_error)};
+  direct = over_exposed_part(std::move(direct), mesh, lost, problem.area, lit.doublings);
+  problem.direct_irradiance = std::move(direct.irradiance);
+  lit.direct_standard_error = std::move(direct.standard_error);
+  return lit;
+}
+
+Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& quarters, std::uint64_t seed,
+                              int rays) {
+  const int to_lights = std::clamp(rays, 2, 8);
+  const LightingOptions few{.lamp_samples = to_lights,
+                            .sun_samples = to_lights,
+                            .mirrored_samples = std::clamp(rays / 2, 2, 8),
+                            .sky_samples = std::clamp(4 * rays, 16, 64),
+                            .seed = seed,
+                            .alike = 4};
+  return direct_irradiance_as_planned(run, plan, quarters, few).irradiance;
 }
 
 }  // namespace patchlight

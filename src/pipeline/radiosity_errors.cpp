@@ -1,8 +1,72 @@
 #include "pipeline/radiosity_errors.h"
 
+#include "patchlight/accuracy/error_bars.h"
 #include "patchlight/transport/lost_share.h"
 
+#include "accuracy/errors.h"
+#include "accuracy/spaces.h"
+#include "base/vectors.h"
+#include "solve/scattering.h"
+
 namespace patchlight {
+namespace {
+
+// Bars of the mesh as they add up over these patches: each band smaller by what noise adds to the squares, which
+// cancels in their sum, but for its standard error. mean_around() shares what is found at a patch with those around it,
+// so that the squares of its parts add up to one in 7.1 where these are quadrilaterals and one in 10.8 where they are
+// triangles.
+Field mesh_bars_of_many(const Simulation& simulation, const Eigen::VectorXd& weight) {
+  const ErrorBars& bars = *simulation.error_bars;
+  if (bars.mesh_noise.size() == 0) return bars.mesh;
+  const Scattering& scattering = simulation.problem.scattering;
+  const Eigen::VectorXd area = simulation.problem.area.cwiseProduct(weight);
+  const Field squares = reflected_variance(scattering, bars.mesh.square());
+  const Field known = squares - reflected_variance(scattering, bars.mesh_noise.square());
+  const Eigen::ArrayXd all = area_sum(squares, area);
+  const Eigen::ArrayXd standard_error = (11 * area_sum(known.square(), area.cwiseAbs2())).sqrt();
+  const Eigen::ArrayXd part = area_sum(known, area).max(0.0) + standard_error;
+  return scaled(bars.mesh, (part < all).select(part / all, 1.0).sqrt());
+}
+
+}  // namespace
+
+AccuracyStep errors_of(const Simulation& simulation, const Eigen::VectorXd& weight) {
+  ErrorBars bars = *simulation.error_bars;
+  bars.mesh = mesh_bars_of_many(simulation, weight);
+  const auto relative = [&](const Field& bar) {
+    return relative_bar(bar, simulation.problem, simulation.solution, weight);
+  };
+  const auto patches = static_cast<PatchIndex>((weight.array() > 0).count());
+  return {.patches = patches,
+          .new_patches = patches,
+          .samples = samples_of(simulation.plan.assembly),
+          .mesh = relative(bars.mesh),
+          .form_factor = relative(bars.form_factor),
+          .solver = relative(bars.solver),
+          .total = relative(bars.total()),
+          .display = relative(bars.display)};
+}
+
+Eigen::VectorXd interest_in(const Scene& scene, const Simulation& simulation) {
+  const std::vector<std::string>& names = simulation.plan.accuracy.interest;
+  const Eigen::VectorXd& enclosed = simulation.enclosed;
+  if (names.empty() && enclosed.size() > 0 && simulation.solution.radiosity.rows() == enclosed.size()) {
+    const Field reflected = simulation.solution.radiosity - simulation.problem.exitance;
+    if (!(reflected.colwise() * enclosed.array() > 0).any()) return Eigen::VectorXd::Ones(enclosed.size());
+  }
+  return interest_of(scene, simulation.mesh, names, enclosed);
+}
+
+std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation) {
+  if (!simulation.error_bars) return {};
+  const PatchMesh& mesh = simulation.mesh;
+  const bool all = simulation.plan.accuracy.interest.empty();
+  const Eigen::VectorXd interest = all ? Eigen::VectorXd::Ones(mesh.size()) : interest_in(scene, simulation);
+  const Eigen::VectorXd inside = interest.cwiseProduct(inside_patches(scene, mesh, simulation.enclosed));
+  const Eigen::VectorXd outside = interest - inside;
+  if (total(inside) == 0 || total(outside) == 0) return {};
+  return {{"inside", errors_of(simulation, inside)}, {"outside", errors_of(simulation, outside)}};
+}
 
 RadiosityErrors radiosity_errors(const Simulation& simulation) {
   if (!simulates(simulation.plan, Effect::interreflection)) return {};

@@ -1,39 +1,62 @@
 #include "pipeline/search.h"
 
+#include "patchlight/base/error.h"
+
 #include "accuracy/errors.h"
 #include "accuracy/refinement.h"
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "base/sampling.h"
 #include "mesh/nested_mesh.h"
-#include "pipeline/error_goals.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"
-#include "pipeline/out_of_reach.h"
-#include "pipeline/relative_errors.h"
-#include "pipeline/run.h"
-#include "pipeline/second_mesh.h"
+#include "pipeline/radiosity_errors.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
-#include "plan/choose_storage.h"
 #include "plan/memory.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// What the meshes by rows of rays are made for.
-struct RayGoal {
-  double error = 0;                                        // relative, as AccuracyStep
-  double times = std::numeric_limits<double>::infinity();  // how often the last mesh could be solved in the time that
-                                                           // is left
+// The patches that an accuracy takes.
+struct Needed {
+  double patches = 0;
+  double reachable = 0;  // the error with as many patches as fit
 };
+
+// Where far more patches are needed for the accuracy than fit, by the decrease of the error over three meshes. Never by
+// rows of rays, whose rays have errors as well.
+std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracyStep> steps) {
+  if (steps.size() < 3 || plan.assembly.storage == Storage::rays) return std::nullopt;
+  const AccuracyStep& before = steps[steps.size() - 3];
+  const AccuracyStep& last = steps.back();
+  const double finer = static_cast<double>(last.patches) / before.patches;
+  const double order = finer > 1 ? std::log(before.total / last.total) / std::log(finer) : 1;
+  const double at_least = std::max(order, mesh_order / 2);
+  const double most = patches_that_fit(plan);
+  const double needed = last.patches * std::pow(last.total / *plan.accuracy.relative_error, 1 / at_least);
+  if (needed <= 2 * most) return std::nullopt;
+  return Needed{needed, last.total * std::pow(last.patches / most, at_least)};
+}
+
+// Throws MemoryError with the memory that so many patches take, and the error that can be reached.
+[[noreturn]] void refuse(const Plan& plan, const Needed& needed) {
+  const auto& [patches, reachable] = needed;
+  throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) + "% needs about " +
+                    std::to_string(static_cast<long>(patches)) + " patches and " +
+                    gigabytes(memory_needed(static_cast<std::size_t>(patches), plan)) + ", and " +
+                    gigabytes(usable_memory(plan.resources)) + " is allowed\nhint: accuracy.relative_error=" +
+                    percent(reachable, 2) + "% or more\nhint: or improve a part only: accuracy.interest");
+}
 
 // The plan of a mesh with so many rays of a patch in the mean, for its memory.
 Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
@@ -41,63 +64,39 @@ Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
   return plan;
 }
 
-bool fits(const LocalCuts& cuts, const Plan& plan) {
-  return memory_needed(cuts.light_place.size(), with_rays_of(cuts, plan)) <= usable_memory(plan.resources);
-}
-
-// A mesh grows no further at once, as it is told from the one before where; and no further than time and memory reach.
-std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, const AccuracyStep& step, const RayGoal& goal) {
-  constexpr double most_growth = 3;
-  constexpr double most_more_rays = 2;
-  constexpr double least_growth = 0.1;
+// Cuts that leave a relative error, by the errors of the mesh before, which allow a limited growth at once, and no more
+// than time and memory do: the last mesh could be solved so many `times` in the time that is left.
+std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, const AccuracyStep& step, double error, double times) {
   // Both patches and rays make a mesh dearer.
-  double growth = std::min(most_growth, std::sqrt(std::max(0.0, goal.times)) - 1);
-  for (; growth > least_growth; growth /= 2) {
-    const double more_rays = std::min(most_more_rays, growth);
-    LocalCuts cuts = local_cuts(solved, step, {goal.error / error_margin, growth, more_rays, more_rays, true});
-    if (!cuts.changes || fits(cuts, solved.simulation.plan)) return cuts;
+  double growth = std::min(3.0, std::sqrt(std::max(0.0, times)) - 1);
+  for (; growth > 0.1; growth /= 2) {
+    const double more_rays = std::min(2.0, growth);
+    LocalCuts cuts = local_cuts(solved, step, {error / error_margin, growth, more_rays, more_rays, true});
+    const Plan plan = with_rays_of(cuts, solved.simulation.plan);
+    if (!cuts.changes || memory_needed(cuts.light_place.size(), plan) <= usable_memory(plan.resources)) return cuts;
   }
   return std::nullopt;
 }
 
-// The mesh after one by rows of rays, by local_cuts(); what is known of the light on other patches is taken from
-// `solved`. `steps` has the errors of all meshes until now. None where nothing more is gained, or fits into the time.
-// Throws MemoryError where there is time and the memory does not suffice.
-std::optional<MeshToSolve> next_mesh_by_rays(SolvedMesh& solved, std::span<const AccuracyStep> steps,
-                                             const RayGoal& goal) {
+// The mesh after one by rows of rays, by local_cuts(); takes the known light of other patches from `solved`. `steps`
+// has the errors of all meshes until now. None where nothing more is gained, or fits into the time. Throws MemoryError
+// where there is time and the memory does not suffice.
+std::optional<MeshToSolve> next_mesh_by_rays(SolvedMesh& solved, std::span<const AccuracyStep> steps, double error,
+                                             double times) {
   const AccuracyStep& step = steps.back();
-  // What is left where more rays gain nothing they do not mend.
-  constexpr double hardly = 0.95;
-  if (step.new_patches == 0 && step.total > hardly * steps[steps.size() - 2].total) return std::nullopt;
-  std::optional<LocalCuts> cuts = cuts_that_fit(solved, step, goal);
+  // More rays no longer reduce the error.
+  if (step.new_patches == 0 && step.total > 0.95 * steps[steps.size() - 2].total) return std::nullopt;
+  std::optional<LocalCuts> cuts = cuts_that_fit(solved, step, error, times);
   if (!cuts) {
     const Plan& plan = solved.simulation.plan;
     if (plan.accuracy.seconds) return std::nullopt;
     constexpr double any = std::numeric_limits<double>::infinity();
-    const LocalCuts wanted = local_cuts(solved, step, {goal.error / error_margin, any, any, any, true});
+    const LocalCuts wanted = local_cuts(solved, step, {error / error_margin, any, any, any, true});
     refuse(with_rays_of(wanted, plan), {static_cast<double>(wanted.light_place.size()), step.total});
   }
   if (!cuts->changes) return std::nullopt;
   return mesh_with(std::move(*cuts), solved);
 }
-
-// The solver's bound for all patches together is asked to be a fiftieth of the accuracy, so that what it leaves to
-// single patches is about a tenth.
-constexpr double share_of_solver = 0.02;
-
-// What the solver may leave of the light that is of interest.
-constexpr double share_of_interest = 0.1;
-
-// So many meshes at most.
-constexpr int most_steps = 20;
-
-// By pairs enough is what is so much lower than was asked for, as errors are estimates. By rays a mesh is made for an
-// error lower than that, and another one would cost as much again.
-constexpr double enough = 1.1;
-
-// Where few sources make most of the noise, as lamps do, they are cut: that samples them more, and leaves what is known
-// of all other pairs. So many, as a share of all, are few.
-constexpr double few = 0.25;
 
 // Lamps are not cut into more patches than can be traced twice.
 Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
@@ -108,11 +107,6 @@ Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
     if ((problem.exitance.row(i) > 0).any()) noise[solved.mesh.parent[i]] = 0;
   }
   return noise;
-}
-
-std::vector<std::uint8_t> either(std::vector<std::uint8_t> marks, const std::vector<std::uint8_t>& others) {
-  for (std::size_t k = 0; k < marks.size(); ++k) marks[k] |= others[k];
-  return marks;
 }
 
 std::size_t count(const std::vector<std::uint8_t>& marks) {
@@ -136,20 +130,14 @@ std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
-// What the solver may leave, unless that or its relative error was asked for.
+// AccuracyOptions::solver_part: a tenth of the accuracy, unless that or the solver's relative error was asked for.
 std::optional<double> part_of_solver(const Run& run, double accuracy) {
   const std::optional<double>& asked = run.plan.accuracy.solver_part;
-  return asked || run.request.solver.relative_error ? asked : std::optional(share_of_interest * accuracy);
+  return asked || run.request.solver.relative_error ? asked : std::optional(0.1 * accuracy);
 }
 
 Plan with_samples(Plan plan, int samples) {
   (plan.assembly.storage == Storage::rays ? plan.assembly.rays : plan.assembly.samples) = samples;
-  return plan;
-}
-
-// What the solver of the next mesh may leave.
-Plan with_solver_part(Plan plan, const std::optional<double>& solver_part) {
-  plan.accuracy.solver_part = solver_part;
   return plan;
 }
 
@@ -162,7 +150,7 @@ AccuracyStep accuracy_of(const SolvedMesh& solved) {
 
 }  // namespace
 
-// What the next mesh is made by.
+// The cuts and samples of the next mesh.
 struct Search::Refinement {
   std::vector<std::uint8_t> cut;  // per parent
   int samples = 0;
@@ -187,7 +175,8 @@ MeshToSolve Search::first() const {
   }
   first.plan.solver.keeps_unfinished = static_cast<bool>(run_.with.keeps_unfinished);
   if (run_.plan.accuracy.relative_error && !run_.request.solver.relative_error) {
-    first.plan.solver.relative_error = share_of_solver * *run_.plan.accuracy.relative_error;
+    // A bound for all patches together; single patches may have five times as much.
+    first.plan.solver.relative_error = 0.02 * *run_.plan.accuracy.relative_error;
     first.plan.accuracy.solver_part = part_of_solver(run_, *run_.plan.accuracy.relative_error);
   }
   return first;
@@ -206,7 +195,7 @@ AccuracyStep Search::step_of(const SolvedMesh& solved) const {
 void Search::keep(const Simulation& simulation) {
   if (!run_.with.keeps_unfinished || (kept_ && !simulation.error_bars)) return;
   if (!may_keep_solution(simulation.mesh.size(), simulation.plan)) return;
-  // With rows that are known nothing follows that could be stopped.
+  // With known rows nothing follows that could be stopped.
   if (run_.with.ray_exchange) return run_.with.keeps_unfinished();
   kept_ = simulation;
   kept_->unfinished = true;
@@ -235,7 +224,8 @@ double Search::times_in_time() const {
 }
 
 // Parents to cut: an eighth at least where the mesh limits, as a mesh that hardly differs costs nearly as much as one
-// that does; and those that make the noise, if they are few or nothing else is left. Else more samples.
+// that does; and those that make the noise, e.g. lamps, if they are at most a quarter or nothing else is left: that
+// samples them more, and all other pairs stay known. Else more samples.
 Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy, const Plan& plan) const {
   const AccuracyStep& step = steps_.back();
   const int samples = samples_of(plan.assembly);
@@ -248,10 +238,10 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
       parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
-  const bool are_few = static_cast<double>(count(noisy)) <= few * static_cast<double>(parents);
-  if (count(noisy) > 0 && (are_few || by_time || step.samples >= most_samples(plan)))
-    return {either(std::move(cut), noisy), samples};
-  return {std::move(cut), more};
+  const bool are_few = static_cast<double>(count(noisy)) <= 0.25 * static_cast<double>(parents);
+  if (count(noisy) == 0 || !(are_few || by_time || step.samples >= most_samples(plan))) return {std::move(cut), more};
+  for (std::size_t k = 0; k < cut.size(); ++k) cut[k] |= noisy[k];
+  return {std::move(cut), samples};
 }
 
 bool Search::may_go_by_rays(const Plan& plan) const {
@@ -297,9 +287,9 @@ MeshToSolve Search::remembered(MeshToSolve next, bool keeps_known) {
 }
 
 std::optional<MeshToSolve> Search::next_by_rays(SolvedMesh& solved, double accuracy) {
-  std::optional<MeshToSolve> next = next_mesh_by_rays(solved, steps_, {accuracy, times_in_time()});
+  std::optional<MeshToSolve> next = next_mesh_by_rays(solved, steps_, accuracy, times_in_time());
   if (!next) return next;
-  next->plan = with_solver_part(next->plan, part_of_solver(run_, accuracy));
+  next->plan.accuracy.solver_part = part_of_solver(run_, accuracy);
   return remembered(std::move(*next), true);
 }
 
@@ -319,8 +309,10 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   // Without an accuracy the error is to be halved as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
   const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
-  if ((is_by_rays ? 1 : enough) * step.total <= accuracy || steps_.size() == most_steps) return std::nullopt;
-  // What a tolerance that was asked for leaves no mesh mends.
+  // Pairs stop 10 % below the accuracy, as errors are estimates. A mesh by rays is made for an error lower than that,
+  // and another one would cost as much again.
+  if ((is_by_rays ? 1 : 1.1) * step.total <= accuracy || steps_.size() == 20) return std::nullopt;
+  // No mesh reduces the error that a given tolerance leaves.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
   if (!std::isfinite(step.solver)) return std::nullopt;
   return is_by_rays ? next_by_rays(solved, accuracy) : next_by_pairs(solved, accuracy);
@@ -340,12 +332,13 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   }
   const AssemblyOptions& before = solved.simulation.plan.assembly;
   const AssemblyOptions& after = more.plan.assembly;
-  const bool all_anew = after.storage != before.storage || samples_of(after) != samples_of(before);
-  if (!all_anew && !more.has_more_patches) return std::nullopt;
+  const bool all_new = after.storage != before.storage || samples_of(after) != samples_of(before);
+  if (!all_new && !more.has_more_patches) return std::nullopt;
 
-  // 2. What is known of them. The solver's error is never asked to be larger than on the mesh before.
-  const bool keeps_known = !all_anew && keeps_entries(after.storage);
-  MeshToSolve to_solve{std::move(more.mesh.mesh), with_solver_part(more.plan, part_of_solver(run_, accuracy)), {}};
+  // 2. Known quantities. The solver's error is never asked to be larger than on the mesh before.
+  const bool keeps_known = !all_new && keeps_entries(after.storage);
+  MeshToSolve to_solve{std::move(more.mesh.mesh), more.plan, {}};
+  to_solve.plan.accuracy.solver_part = part_of_solver(run_, accuracy);
   to_solve.plan.solver.keeps_unfinished = false;
   to_solve.known.place = std::move(more.mesh.place);
   to_solve.known.lost = solved.simulation.transport.lost;

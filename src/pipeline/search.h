@@ -3,12 +3,11 @@
 #include "pipeline/run.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace patchlight {
 
-/// The way to an accuracy: finer and finer meshes, with more samples where these are what limits, until the plan's
+/// The way to an accuracy: finer and finer meshes, with more samples where their noise limits it, until the plan's
 /// accuracy is reached or its time is up; by rows of rays where all pairs of the next mesh do not fit into the memory,
 /// unless these or a time were asked for. A run that asks for none has one mesh, and a second one where
 /// AccuracyOptions::local_cuts pay.
@@ -23,14 +22,14 @@ class Search {
   /// Keeps a solution, where Steps::keeps_unfinished, in case the run is stopped before there is a better one: that of
   /// the first mesh before its errors are known, every later one with them, as long as the memory has room for it.
   void keep(const Simulation& simulation);
-  /// What was kept last.
+  /// The last kept solution.
   const std::optional<Simulation>& kept() const { return kept_; }
 
-  /// The solved mesh with the accuracy of all meshes until now, as Steps::look is told on the way to an accuracy.
+  /// The solved mesh with the accuracy of all meshes until now, as Steps::look gets it on the way to an accuracy.
   SolvedMesh noted(SolvedMesh solved);
 
-  /// The next mesh after one that was noted; none when that is good enough, or time is up. What is known of it is taken
-  /// for the next one. \throws MemoryError when the accuracy takes more memory than the request allows, with the
+  /// The next mesh after one that was noted; none when that is good enough, or time is up. Takes from `solved` all that
+  /// the next one can use. \throws MemoryError when the accuracy takes more memory than the request allows, with the
   /// accuracy that can be reached.
   std::optional<MeshToSolve> next(SolvedMesh& solved);
 

@@ -1,16 +1,17 @@
 #include "pipeline/solved.h"
 
 #include "patchlight/accuracy/error_bars.h"
+#include "patchlight/base/error.h"
 #include "patchlight/solve/problem.h"
 #include "patchlight/transport/lost_share.h"
 
 #include "accuracy/errors.h"
 #include "accuracy/spaces.h"
+#include "base/parallel.h"
+#include "base/tolerances.h"
 #include "base/vectors.h"
-#include "pipeline/light_of_lamps.h"
-#include "pipeline/notes_on_run.h"
-#include "pipeline/relative_errors.h"
-#include "pipeline/run.h"
+#include "pipeline/radiosity_errors.h"
+#include "pipeline/solve_with_rays.h"
 #include "solve/scattering.h"
 
 #include <algorithm>
@@ -18,9 +19,46 @@
 #include <functional>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace patchlight {
 namespace {
+
+// Ranges of at most 64 patches that emit.
+std::vector<PatchRange> lamps_of(const FieldView& exitance) {
+  std::vector<PatchRange> lamps;
+  for (Eigen::Index row = 0; row < exitance.rows(); ++row) {
+    if (!(exitance.row(row) > 0).any()) continue;
+    const auto i = static_cast<PatchIndex>(row);
+    if (!lamps.empty() && lamps.back().end == i && i - lamps.back().begin < 64) {
+      ++lamps.back().end;
+    } else {
+      lamps.push_back({i, i + 1});
+    }
+  }
+  return lamps;
+}
+
+// H = F E + H_direct; B = E + rho o H.
+Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& problem, const Observer& observer) {
+  const double start = wall_seconds();
+  Field H = irradiance_by_lamps(transport, problem.exitance, Stage::solve, observer);
+  if (problem.direct_irradiance.size() > 0) H += problem.direct_irradiance;
+  const auto rows = (problem.exitance > 0).rowwise().any().count();
+  Solution solution;
+  solution.radiosity = radiosity_from(problem, H);
+  solution.direct_irradiance = H;
+  solution.irradiance = H;
+  solution.error = Field::Zero(H.rows(), H.cols());
+  solution.patch_bound = 0;
+  solution.converged = true;
+  solution.history = {{.seconds = wall_seconds() - start,
+                       .work = static_cast<double>(rows) / static_cast<double>(problem.exitance.rows())}};
+  const Progress last{
+      .stage = Stage::solve, .fraction = 1, .iteration = &solution.history[0], .irradiance = [&H] { return H; }};
+  if (observer && !observer(last)) throw Cancelled();
+  return solution;
+}
 
 // Solves with some options.
 using Solve = std::function<Solution(const SolverOptions& options)>;
@@ -31,19 +69,9 @@ struct SolvedWith {
   double relative_error = 0;
 };
 
-// Asked for so much less than is needed, as the bound of a patch does not fall evenly with the residual.
-constexpr double bar_margin = 0.5;
-
-// In one step no farther than this.
-constexpr double farthest = 1e-4;
-
-// Nearer than this to rounding no solver gets.
-constexpr double least_error = 1e-12;
-
-// The solution by some options, or with a smaller relative error than these ask for until the solver's part of the
-// error of what is of interest is no more than AccuracyOptions::solver_part: a bound on all light together says little
-// about the light in a dim room. Ends with the last one that has converged. `simulation` has the plan, the problem and
-// the mesh.
+// The solution by some options, or with a smaller relative error until the solver's part of the error of interest is no
+// more than AccuracyOptions::solver_part: a bound on all light together says little about the light in a dim room. Ends
+// with the last one that has converged. `simulation` has the plan, the problem and the mesh.
 SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve) {
   SolverOptions options = by;
@@ -54,9 +82,11 @@ SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, cons
   for (;;) {
     const SolvedProblem solved{simulation.problem, best.solution};
     const double left = relative_bar(solver_errors(solved), simulation.problem, best.solution, interest);
-    // What is infinite has no bound, or no light: no tolerance mends that.
-    if (!(left > *part) || !std::isfinite(left) || best.relative_error <= least_error) return best;
-    options.relative_error = std::max(least_error, best.relative_error * std::max(farthest, bar_margin * *part / left));
+    // An infinite part has no bound, or no light, whatever the tolerance. No solver gets nearer to rounding.
+    if (!(left > *part) || !std::isfinite(left) || best.relative_error <= tolerance_of_arithmetic) return best;
+    // Half of the needed error, as the bound of a patch does not fall evenly with the residual, in limited steps.
+    options.relative_error =
+        std::max(tolerance_of_arithmetic, best.relative_error * std::max(1e-4, 0.5 * *part / left));
     Solution next = solve(options);
     if (!next.converged) return best;
     best = {std::move(next), tolerance_of(options)};
@@ -77,7 +107,7 @@ EnergyBalance energy_balance(const RadiosityProblem& problem, const Solution& so
   balance.absorbed = flux(absorb(problem.scattering, H));
   balance.escaped = flux(B.colwise() * lost.escaped.array());
   balance.lost_at_backs = flux(B.colwise() * lost.at_backs.array());
-  // What leaves a patch and arrives at no other, beyond the measured lost share.
+  // Light that leaves a patch and arrives at no other, beyond the measured lost share.
   balance.defect = flux(B.colwise() * (1 - row_sum.array() - lost.escaped.array() - lost.at_backs.array()));
   const Eigen::ArrayXd all = balance.emitted + balance.arriving;
   const Eigen::ArrayXd left = all - balance.absorbed - balance.escaped - balance.lost_at_backs - balance.defect;
@@ -113,15 +143,24 @@ Simulation solved_by_rays(const Run& run, Simulation simulation, const MeshTrans
   return simulation;
 }
 
-// Every iterate is kept.
-Observer telling_what_is_kept(const Run& run) {
-  return [&run](const Progress& progress) {
-    if (progress.iteration != nullptr) run.with.keeps_unfinished();
-    return !run.observer || run.observer(progress);
-  };
+}  // namespace
+
+Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
+                          const Observer& observer) {
+  Field H = Field::Zero(exitance.rows(), exitance.cols());
+  for (const PatchRange& lamp : lamps_of(exitance)) {
+    if (observer && !observer({.stage = stage})) throw Cancelled();
+    const Eigen::Index count = lamp.end - lamp.begin;
+    H += transport.shoot(lamp, exitance.middleRows(lamp.begin, count));
+  }
+  return H;
 }
 
-}  // namespace
+SolveWith solver_as_planned(SolveWith solve, const Plan& plan) {
+  if (simulates(plan, Effect::interreflection)) return solve ? std::move(solve) : SolveWith(patchlight::solve);
+  return [](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
+            const Observer& observer) { return light_of_lamps(transport, problem, observer); };
+}
 
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem) {
   Simulation simulation;
@@ -134,10 +173,8 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   simulation.world = run.world;
   if (run.scene.sky || run.scene.sun)
     simulation.enclosed = enclosed_patches(run.scene, run.world->all_faces(), simulation.mesh);
-  if (run.with.exchange || run.with.ray_exchange) {
+  if (run.with.exchange || run.with.ray_exchange)
     simulation.notes = merged({std::move(simulation.notes), notes_on_hidden_lamps(run.scene, simulation)});
-  }
-
   if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);
 
   const bool keeps = keeps_entries(meshed.plan.assembly.storage);
@@ -145,7 +182,11 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
   SolverOptions options = meshed.plan.solver;
   options.largest_row_sum = keeps ? largest(facts.row_sum) : std::numeric_limits<double>::infinity();
   const SolveWith solve = solver_as_planned(run.with.solve, meshed.plan);
-  const Observer observer = options.keeps_unfinished ? telling_what_is_kept(run) : run.observer;
+  const Observer keeping = [&run](const Progress& progress) {
+    if (progress.iteration != nullptr) run.with.keeps_unfinished();  // every iterate is kept
+    return !run.observer || run.observer(progress);
+  };
+  const Observer& observer = options.keeps_unfinished ? keeping : run.observer;
   const Solve once = [&](const SolverOptions& by) { return solve(*transport.rows, simulation.problem, by, observer); };
   SolvedWith found = solve_for_interest(run, simulation, options, once);
   simulation.plan.solver.relative_error = found.relative_error;

@@ -7,14 +7,16 @@
 #include "accuracy/spaces.h"
 #include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
 #include "pipeline/light_of_lamps.h"
 #include "pipeline/lit_problem.h"
 #include "pipeline/local_cuts.h"
-#include "pipeline/relative_errors.h"
-#include "pipeline/run.h"
-#include "pipeline/second_mesh.h"
+#include "pipeline/problem_of.h"
+#include "pipeline/radiosity_errors.h"
+#include "pipeline/solved.h"
 #include "plan/goal.h"
 #include "transport/closure.h"
 
@@ -41,7 +43,7 @@ std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simula
   std::vector<std::uint8_t> is_left_out;
   for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
   PatchMesh all = refine(mesh);
-  all.middles.clear();  // which belong to edges, of which light knows nothing
+  all.middles.clear();  // they belong to edges, on which light does not depend
   const PatchMesh quarters = without_patches(all, is_left_out);
   std::array<Field, 2> direct;
   for (std::size_t half = 0; half < direct.size(); ++half) {
@@ -62,25 +64,16 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
                                         const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
   QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
   if (has_point_or_daylight(run.scene)) look.direct = direct_at_quarters(run, simulation, needed.bands, look);
-  const Occluder& occluder = run.world->between_patches();
   const SolvedProblem solved = needed.solved();
-  UnseenDifferences unseen = unseen_differences({simulation.mesh, occluder, simulation.transport.lost, solved},
-                                                transport, weight, look, run.observer);
-  unseen.error = expanded(unseen.error, needed.bands);
-  unseen.noise = expanded(unseen.noise, needed.bands);
-  unseen.display = expanded(unseen.display, needed.bands);
+  UnseenDifferences unseen =
+      unseen_differences({simulation.mesh, run.world->between_patches(), simulation.transport.lost, solved}, transport,
+                         weight, look, run.observer);
+  for (Field* field : {&unseen.error, &unseen.noise, &unseen.display}) *field = expanded(*field, needed.bands);
   return unseen;
 }
 
-// Rays from each quarter of a patch: enough to see what gaps narrower than patches hide. Fewer where there are many
-// patches, for the sake of time: the mean over the patches around takes the noise away.
+// Rays from each quarter of a patch: enough to see into gaps narrower than patches.
 constexpr int rays_from_quarters = 8;
-constexpr int max_rays_for_accuracy = 16;  // where an accuracy is requested
-
-int usual_rays_of_quarters(PatchIndex patches) {
-  constexpr PatchIndex very_many_patches = 100'000;
-  return patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
-}
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
@@ -98,7 +91,7 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
 Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw, const Field& exitance) {
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = simulation.plan.assembly;
-  again.seed = hash({simulation.plan.assembly.seed, 1});
+  again.seed = hash({simulation.plan.assembly.seed, stream::repeated_run});
   const auto transport = on_demand_transport(simulation.mesh, run.world->between_patches(), again, area);
   const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, run.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
@@ -110,37 +103,32 @@ struct SamplingErrors {
   std::vector<Field> draws;
 };
 
-// Light straight from the lamps is found twice, unless lamps are too many.
-SamplingErrors sampling_errors_in_bands(const Run& run, const Simulation& simulation, const Assembly& raw,
-                                        const RowTransport& transport, const SolvedProblem& solved) {
-  const Field& B = solved.solution.radiosity;
-  if (share_of_lamps(solved.problem) > most_lamps) {
-    std::vector<Field> draws = draw_form_factor_errors(simulation.mesh, raw, transport, solved, B);
-    Field error = mean_square(draws).sqrt();
-    return {std::move(error), std::move(draws)};
-  }
-  const Field difference = direct_difference(run, simulation, raw, solved.problem.exitance);
-  const Field direct = direct_light_errors(simulation.mesh, transport, solved.problem, difference);
-  std::vector<Field> draws =
-      draw_form_factor_errors(simulation.mesh, raw, transport, solved, B - solved.problem.exitance);
-  Field error = (direct.square() + mean_square(draws)).sqrt();
-  return {std::move(error), std::move(draws)};
-}
-
+// Light straight from the lamps is computed twice, unless lamps are too many.
 SamplingErrors sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw,
                                const RowTransport& transport, const SolvedProblem& solved) {
   const InNeededBands needed = in_needed_bands(solved);
   const SolvedProblem in_bands{needed.problem, needed.solution, solved.closed};
-  SamplingErrors found = sampling_errors_in_bands(run, simulation, raw, transport, in_bands);
+  const PatchMesh& mesh = simulation.mesh;
+  const Field& B = needed.solution.radiosity;
+  const Field& E = needed.problem.exitance;
+  SamplingErrors found;
+  if (share_of_lamps(needed.problem) > most_lamps) {
+    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B);
+    found.error = mean_square(found.draws).sqrt();
+  } else {
+    const Field direct =
+        direct_light_errors(mesh, transport, needed.problem, direct_difference(run, simulation, raw, E));
+    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B - E);
+    found.error = (direct.square() + mean_square(found.draws)).sqrt();
+  }
   found.error = expanded(found.error, needed.bands);
   for (Field& draw : found.draws) draw = expanded(draw, needed.bands);
   return found;
 }
 
-// What it does to the irradiance that the exposed shares of patches may be off. Where closure brings the entries of a
-// row to the sum that follows from that share, it changes them in proportion to their variances: light of other patches
-// takes the same part of the error as the row, and off is only by how much the light of those that change differs from
-// the mean.
+// The errors of the irradiance by errors of the exposed shares of patches. Where closure brings the entries of a row to
+// the sum that follows from that share, it changes them in proportion to their variances: light of other patches takes
+// the same part of the error as the row, and only the difference of the changing patches' light from the mean counts.
 Field errors_of_exposure(const Simulation& simulation, const ErrorsOfEntries& errors, const SolvedProblem& solved) {
   const Field& irradiance = solved.solution.irradiance;
   const Eigen::ArrayXd relative = exposure_errors(simulation.transport.lost);
@@ -158,13 +146,13 @@ Field errors_of_exposure(const Simulation& simulation, const ErrorsOfEntries& er
   return off.colwise() * relative;
 }
 
-// What the size of the patches errs, and where from.
+// The errors by the size of the patches, by source.
 struct MeshBars {
   Field from_larger;         // of sources that are not even
   UnseenDifferences unseen;  // of light that differs inside patches
   Field in_gaps;             // of gaps that are narrower than their patches
   Field dark;                // radiosity that patches lose where they reach into solids
-  Field by_dark_parts;       // and what that does to the irradiance
+  Field by_dark_parts;       // and the error of the irradiance by it
 
   Field total() const {
     return (from_larger.max(unseen.error).square() + in_gaps.square() + by_dark_parts.square()).sqrt();
@@ -208,18 +196,18 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
          scaled_to(squares(bars.unseen.error), unseen.cwiseMax(0.0));
 }
 
-// More of them where rows have more, and where little may be left, as what the bars may leave is smaller.
+// Fewer rays where there are many patches, for the sake of time: the mean over the patches around reduces the noise.
+// More where rows have more, and up to 16 for an accuracy below 10 %, as the bars have to be smaller.
 int rays_of_quarters(const Simulation& simulation) {
-  constexpr double usual_accuracy = 0.1;
-  const int usual = usual_rays_of_quarters(simulation.mesh.size());
+  const PatchIndex patches = simulation.mesh.size();
+  const int usual = patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
   const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
   const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
-  const double of_accuracy =
-      asked ? std::min(static_cast<double>(max_rays_for_accuracy) / usual, usual_accuracy / *asked) : 1;
+  const double of_accuracy = asked ? std::min(16.0 / usual, 0.1 / *asked) : 1;
   return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 
-// What the size of the patches errs by rows of rays.
+// The errors by the size of the patches, by rows of rays.
 struct BarsOfRays {
   Field of_light;        // that differs inside patches and parents
   Field in_gaps;         // that are narrower than their patches
@@ -227,8 +215,8 @@ struct BarsOfRays {
                          // meshes may follow
 };
 
-// What may be refined: parents by what their patches do, and by what errs in gaps, which is their own; none by its
-// noise, which more rays take away.
+// The effects of refinement: of parents by the light of their patches, and by errors in gaps, which are their own; none
+// by noise, which more rays take away.
 SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen,
                         const BarsOfRays& bars) {
   const Simulation& simulation = result.simulation;
@@ -244,7 +232,7 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
       scaled_to(squares(of_light), summed_by_parent(result.mesh, unseen.effects.array()).col(0).matrix().cwiseMax(0.0));
   const Eigen::VectorXd in_gaps = squares(of_gaps);
   const double all = result.effects.sum() + in_gaps.sum();
-  // What so many cuts would not mend they need not begin with.
+  // Errors that remain after so many cuts do not count.
   if (bars.in_narrow_gaps.size() > 0)
     result.effects += (in_gaps - squares(is_of_gap.select(bars.in_narrow_gaps, 0.0))).cwiseMax(0.0);
   else
@@ -256,7 +244,7 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   result.noise_bar = relative(simulation.ray_standard_error);
   const Field& of_lights = simulation.direct_standard_error;
   if (of_lights.size() == 0) return result;
-  // How much of a patch is exposed the rays of rows tell.
+  // The exposed share of a patch is an error of rows.
   const Field by_exposure = simulation.problem.direct_irradiance.colwise() * exposure_errors(simulation.transport.lost);
   const Field by_rays = (of_lights.square() - by_exposure.square()).max(0.0).sqrt();
   result.light_noise = of_each(by_rays);
@@ -266,9 +254,9 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   return result;
 }
 
-// Rows of rays know what they err by themselves; the patches' part is found with rays of their own.
+// Rows of rays have their own error estimate; rays at quarters of patches find the part of the mesh.
 SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPockets& transport) {
-  // Where rows are known no further ray is traced.
+  // Known rows allow no further ray.
   if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
@@ -284,9 +272,9 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
   const bool has_parents = result.mesh.parents.size() > 0;
   const auto in_gaps = [&](int cuts) { return gap_errors(simulation.mesh, transport.rays(), solved, cuts); };
   BarsOfRays bars{has_parents ? Field(unseen.error.max(within_parents())) : unseen.error, in_gaps(0), {}};
-  // Light that differs inside the patches of a gap is what goes wrong there: of both the larger one counts.
+  // Errors in gaps are differences of light inside their patches: of both the larger one counts.
   const Field of_mesh = bars.of_light.max(bars.in_gaps);
-  // Where parents or gaps say more, that is not by noise.
+  // Larger errors by parents or gaps are not noise.
   const Field by_noise = (unseen.error >= of_mesh).select(unseen.noise, 0.0);
   simulation.error_bars = {.mesh = of_mesh,
                            .mesh_noise = by_noise,
@@ -307,7 +295,7 @@ double share_of_lamps(const RadiosityProblem& problem) {
 
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
   if (transport.rays) {
-    // Beside the rows all of it is in the solution by now.
+    // The solution has all of the light but the rows.
     result.light = std::move(transport.light->as_found);
     transport.light.reset();
     transport.facts = {};
@@ -321,12 +309,12 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   const LostShare& lost = simulation.transport.lost;
   const SolvedProblem solved{simulation.problem, simulation.solution, lost.closed() && simulation.plan.assembly.close};
 
-  // 1. What counts.
+  // 1. The patches of interest.
   result.interest = interest_in(run.scene, simulation);
   require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(rows, solved.problem, result.interest);
 
-  // 2. What patches, samples and solver err.
+  // 2. The errors by patches, samples and solver.
   const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));
   auto [sampled, draws] = sampling_errors(run, simulation, *result.raw, rows, solved);
   const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
@@ -345,7 +333,7 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
                            .solver = solver_errors(solved),
                            .display = display_errors(result.mesh, solved).max(of_mesh.unseen.display)};
 
-  // 3. Where from.
+  // 3. Their sources.
   result.effects = effects_of(result, solved, weight, of_mesh);
   if (has_point_or_daylight(run.scene)) {
     // The edge of the sun's light crosses fewer patches, by area, when these are finer.

@@ -5,6 +5,7 @@
 #include "accuracy/spaces.h"
 
 #include <initializer_list>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -60,7 +61,7 @@ Asked kept_errors(const Request& request) { return {"assembly.keep_errors", requ
 
 Asked max_rows(const Request& request) { return {"solver.max_rows", request.solver.max_rows.has_value()}; }
 
-// What makes error bars wanted.
+// The option that asks for error bars.
 Asked error_bars(const AccuracyOptions& accuracy) {
   if (accuracy.relative_error) return {"accuracy.relative_error"};
   if (accuracy.seconds) return {"accuracy.seconds"};
@@ -76,11 +77,6 @@ void require_alone(const Asked& one, std::initializer_list<Asked> others, const 
     if (!other.is_asked) continue;
     throw InputError(one.part, "cannot be used with " + other.part + ": " + why);
   }
-}
-
-void require_one_patch_size(const MeshOptions& mesh) {
-  require_alone({"mesh.max_edge", mesh.max_edge.has_value()}, {{"mesh.patches", mesh.patches.has_value()}},
-                "both set the size of the patches");
 }
 
 void require_consistent_effects(const Request& request, const Given& given) {
@@ -152,20 +148,9 @@ void require_rows_possible(const Request& request, const Given& given) {
                                           name_of(request.assembly.storage) + "\nhint: assembly.storage=rays");
 }
 
-void require_automatic_estimator(const Request& request) {
-  require_alone(short_cuts(request), {other_estimator(request)}, "only the automatic estimator has shortcuts");
-  require_alone(kept_errors(request), {other_estimator(request)}, "only the automatic estimator knows these errors");
-}
-
-// What leaves no error bars, and why.
-struct Obstacle {
-  Asked asked;
-  const char* why;
-};
-
-// Error bars take the closed matrix of the automatic estimator, made in the run, and the solution to be exact but for
-// the solver's error.
-std::vector<Obstacle> obstacles_to_error_bars(const Request& request, const Given& given) {
+// The options that leave no error bars, and why: these take the closed matrix of the automatic estimator, made in the
+// run, and the solution to be exact but for the solver's error.
+std::vector<std::pair<Asked, const char*>> obstacles_to_error_bars(const Request& request, const Given& given) {
   const char* const found_in_the_run = "error bars need form factors that are computed in this run";
   const char* const closed = "error bars need closure";
   return {{on_demand(request), found_in_the_run},
@@ -192,10 +177,12 @@ void require_error_bars_possible(const Request& request, const Given& given) {
 }  // namespace
 
 void check(const Request& request, const Given& given) {
-  require_one_patch_size(request.mesh);
+  require_alone({"mesh.max_edge", request.mesh.max_edge.has_value()},
+                {{"mesh.patches", request.mesh.patches.has_value()}}, "both set the size of the patches");
   require_solver_for(request);
   require_rows_possible(request, given);
-  require_automatic_estimator(request);
+  require_alone(short_cuts(request), {other_estimator(request)}, "only the automatic estimator has shortcuts");
+  require_alone(kept_errors(request), {other_estimator(request)}, "only the automatic estimator knows these errors");
   require_consistent_effects(request, given);
   require_error_bars_possible(request, given);
 }

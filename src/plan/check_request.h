@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// What one part of a request says against another, whatever the scene is like. Messages name fields as
-/// "accuracy.relative_error", with the value where that is what counts: "effects.skip=sun".
+/// Checks the parts of a request against each other, whatever the scene is like. Messages name fields as in
+/// "accuracy.relative_error", with the value where it counts: "effects.skip=sun".
 /// \throws InputError when parts of the request cannot be together.
 void check(const Request& request, const Given& given = {});
 

@@ -1,16 +1,154 @@
 #include "plan/decide.h"
 
+#include "light/texture.h"
+#include "plan/survey.h"
+#include "scene/all_spectra.h"
 #include "scene/model_face.h"
+#include "scene/solids.h"
+#include "scene/transmittance.h"
+#include "visibility/flat_polygon.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 
 namespace patchlight {
 namespace {
+
+// The materials of kept sides, each once.
+std::vector<const Material*> materials_in_use(const Scene& scene, const KeptSides& kept) {
+  std::vector<std::uint8_t> used(scene.materials.size(), 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    for (const Side side : {Side::front, Side::back})
+      if (is_kept(kept, p, side)) used[material_on(scene.polygons[p], side)] = 1;
+  }
+  std::vector<const Material*> materials;
+  for (std::size_t m = 0; m < used.size(); ++m) {
+    if (used[m]) materials.push_back(&scene.materials[m]);
+  }
+  return materials;
+}
+
+bool is_constant(const Spectrum& spectrum) { return spectrum.size() == 0 || (spectrum == spectrum[0]).all(); }
+
+// Transmitted and mirrored light keeps its color.
+bool has_grey_passage(const Material& material) {
+  return is_constant(material.transmittance) && is_constant(material.specular_reflectance);
+}
+
+bool is_grey(const Material& material) {
+  return is_constant(material.reflectance) && is_constant(material.diffuse_transmittance);
+}
+
+// The largest share that is scattered, to either side.
+double highest_scattered(const Material& material) {
+  if (material.diffuse_transmittance.size() == 0) return material.reflectance.maxCoeff();
+  return (material.reflectance + material.diffuse_transmittance).maxCoeff();
+}
+
+// A place behind which there is no light stays as it is: transmittances of faces that take no part colour daylight,
+// too.
+bool is_grey(const Scene& scene, const std::vector<const Material*>& in_use) {
+  return std::all_of(in_use.begin(), in_use.end(), [](const Material* m) { return is_grey(*m); }) &&
+         std::all_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& m) { return has_grey_passage(m); });
+}
+
+// The spectra of all emitting materials and other lights.
+std::vector<Spectrum> light_spectra(const Scene& scene, const std::vector<const Material*>& in_use) {
+  Scene lights;
+  for (const Material* material : in_use) lights.materials.emplace_back().exitance = material->exitance;
+  lights.luminaires = scene.luminaires;
+  lights.sun = scene.sun;
+  lights.sky = scene.sky;
+  std::vector<Spectrum> spectra;
+  visit_lights(lights, [&](const Spectrum& spectrum, const SampledSpectrum*) {
+    if ((spectrum != 0).any()) spectra.push_back(spectrum);
+  });
+  return spectra;
+}
+
+// The spectrum of which all are multiples, scaled to the largest value 1.
+std::optional<Spectrum> common_colour(const std::vector<Spectrum>& spectra) {
+  if (spectra.empty()) return std::nullopt;
+  const Spectrum colour = spectra[0] / spectra[0].maxCoeff();
+  for (const Spectrum& spectrum : spectra) {
+    // Two quotients may differ by rounding.
+    if (((spectrum / spectrum.maxCoeff() - colour).abs() > 4 * std::numeric_limits<double>::epsilon()).any())
+      return std::nullopt;
+  }
+  return colour;
+}
+
+std::vector<Eigen::Index> bands_without_light(const std::vector<Spectrum>& spectra, Eigen::Index bands) {
+  std::vector<Eigen::Index> dark;
+  for (Eigen::Index band = 0; band < bands && !spectra.empty(); ++band) {
+    if (std::all_of(spectra.begin(), spectra.end(), [&](const Spectrum& s) { return s[band] == 0; }))
+      dark.push_back(band);
+  }
+  return dark;
+}
+
+// True when some kept side does not face the inside of a closed solid without openings.
+bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
+  const Shells shells = shells_of(scene);
+  std::vector<Solid> sealed = closed_solids(scene, shells);
+  std::erase_if(sealed, [](const Solid& solid) { return solid.has_opening; });
+  const std::vector<std::uint8_t> within = sides_within(scene, shells, sealed);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if ((kept.front[p] && !within[std::size_t{2} * p]) || (kept.back[p] && !within[std::size_t{2} * p + 1]))
+      return true;
+  }
+  return false;
+}
+
+// Adds the facts about the pictures on kept sides.
+EffectFacts with_texture_facts(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
+  std::vector<std::uint8_t> is_textured(scene.materials.size(), 0);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const Polygon& polygon = scene.polygons[p];
+    for (const Side side : {Side::front, Side::back})
+      if (is_kept(kept, p, side) && texture_map_on(scene, polygon, side)) is_textured[material_on(polygon, side)] = 1;
+  }
+  for (std::size_t m = 0; m < is_textured.size(); ++m) {
+    if (is_textured[m] == 0) continue;
+    const TextureRange range = range_of(*scene.materials[m].texture);
+    ++facts.textured;
+    facts.texture_deviation = std::max(facts.texture_deviation, range.deviation);
+    facts.highest_reflectance = std::max(facts.highest_reflectance, range.highest_reflectance);
+    facts.grey = facts.grey && range.grey;
+  }
+  return facts;
+}
+
+// Panes reflect most at grazing angles: without a reflection there, they reflect nothing.
+bool reflects(const Material& clear) { return (specular_reflectance(panes_of(clear), 0.1) > 0).any(); }
+
+EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const auto shines = [&](Side side) { return is_kept(kept, p, side) && emits(scene, p, side); };
+    facts.lamps += shines(Side::front) || shines(Side::back);
+    const MaterialIndex material = scene.polygons[p].material;
+    const bool is_clear = is_opening(scene, p) && !scene.materials[material].second_face;
+    facts.openings += is_clear;
+    facts.reflecting += is_clear && is_reflecting_pane(scene, p);
+    facts.sheets += is_sheet(scene, p);
+    facts.mirrors += is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
+  }
+  facts.luminaires = scene.luminaires.size();
+  facts.sky = scene.sky.has_value();
+  if (scene.sun) {
+    const double sine = std::clamp(scene.sun->direction.dot(scene.up), -1.0, 1.0);
+    facts.sun_altitude = std::asin(sine) * 180 / std::numbers::pi;
+  }
+  if (scene.sun || scene.sky) facts.sees_out = some_side_sees_out(scene, kept);
+  return facts;
+}
 
 // The decision that the facts call for, or the one that the request asks for instead.
 Decision overruled(Decision by_facts, const Request& request) {
@@ -76,15 +214,13 @@ Decision colour(const EffectFacts& facts) {
           std::to_string(solved) + " of " + all + " are solved, together"};
 }
 
+// Up to three names with their places, as in "'attic' (house.obj:12)", or the first three of more without.
 std::string first_names(const std::vector<DarkSolid>& solids) {
-  constexpr std::size_t few = 3;
-  std::string list;
-  const bool with_place = solids.size() <= few;  // "'attic' (house.obj:12)"
-  for (std::size_t k = 0; k < std::min(few, solids.size()); ++k) {
-    const std::string& name = solids[k].name;
-    list += (k > 0 ? ", " : "") + (with_place ? name : name.substr(0, name.rfind(" (")));
-  }
-  return solids.size() > few ? list + " and " + std::to_string(solids.size() - few) + " more" : list;
+  const bool with_place = solids.size() <= 3;
+  std::vector<std::string> names;
+  for (const DarkSolid& solid : solids)
+    names.push_back(with_place ? solid.name : solid.name.substr(0, solid.name.rfind(" (")));
+  return first_few(names, 3);
 }
 
 // Nothing is left out of sides that are given.
@@ -228,7 +364,53 @@ bool is_there(Effect effect, const EffectFacts& facts) {
   }
 }
 
+const char* word_for(const Decision& decision) {
+  if (decision.forced) return decision.simulate ? "enabled by option" : "disabled by option";
+  return decision.simulate ? "simulated" : "left out";
+}
+
 }  // namespace
+
+bool is_reflecting_pane(const Scene& scene, PolygonIndex polygon) {
+  const Polygon& face = scene.polygons[polygon];
+  return is_opening(scene, polygon) && (reflects(scene.materials[material_on(face, Side::front)]) ||
+                                        reflects(scene.materials[material_on(face, Side::back)]));
+}
+
+std::size_t coloured_specular(const Scene& scene, const KeptSides& kept) {
+  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
+  return static_cast<std::size_t>(
+      std::count_if(in_use.begin(), in_use.end(), [](const Material* m) { return !has_grey_passage(*m); }));
+}
+
+EffectFacts survey_effects(const Scene& scene, const KeptSides& kept) {
+  EffectFacts facts;
+  facts.polygons = scene.polygons.size();
+  const std::vector<std::uint8_t> on_hull = on_convex_hull(scene);
+  facts.inside_hull = static_cast<std::size_t>(std::count(on_hull.begin(), on_hull.end(), std::uint8_t{0}));
+
+  const std::vector<const Material*> in_use = materials_in_use(scene, kept);
+  for (const Material* material : in_use)
+    facts.highest_reflectance = std::max(facts.highest_reflectance, highest_scattered(*material));
+  facts.bands = number_of_bands(scene);
+  facts.band_choice = scene.band_choice;
+  facts.grey = is_grey(scene, in_use);
+  facts.coloured_specular = coloured_specular(scene, kept);
+  const std::vector<Spectrum> spectra = light_spectra(scene, in_use);
+  facts.lamp_colour = common_colour(spectra);
+  facts.dark_bands = bands_without_light(spectra, facts.bands);
+
+  facts.materials = in_use.size();
+  facts = with_texture_facts(std::move(facts), scene, kept);
+
+  facts.dark_solids = kept.dark_solids;
+  facts.unreached = kept.unreached;
+  facts.turned_away = kept.turned_away;
+  facts = with_lights(std::move(facts), scene, kept);
+  for (const UnsimulatedMaterials& found : scene.unsimulated)
+    (found.property == UnsimulatedProperty::mirror ? facts.gloss : facts.glass) += found.materials;
+  return facts;
+}
 
 Decision closed_by_rays() {
   return {Effect::closure, false, "each row of rays is closed by itself", "products with the matrix"};
@@ -269,6 +451,27 @@ Diagnostics notes_on_overruling(const EffectFacts& facts, const Request& request
   add("effects.force", request.effects.force);
   add("effects.skip", request.effects.skip);
   return notes;
+}
+
+std::vector<Effect> simulated_effects() {
+  return {Effect::occlusion, Effect::interreflection, Effect::colour, Effect::reach,
+          Effect::backs,     Effect::luminaires,      Effect::sun,    Effect::sky,
+          Effect::textures,  Effect::mirrors,         Effect::closure};
+}
+
+const char* name_of(Effect effect) {
+  constexpr std::array names = {
+      "occlusion", "interreflection", "color",   "reach",          "backs",   "luminaires", "sun",  "sky",
+      "textures",  "mirrors",         "closure", "color of panes", "spectra", "gloss",      "glass"};
+  return names.at(static_cast<std::size_t>(effect));
+}
+
+bool contains(const std::vector<Effect>& effects, Effect effect) {
+  return std::find(effects.begin(), effects.end(), effect) != effects.end();
+}
+
+std::string sentence(const Decision& decision) {
+  return std::string(name_of(decision.effect)) + ": " + word_for(decision) + "; " + decision.reason;
 }
 
 }  // namespace patchlight

@@ -3,9 +3,11 @@
 #include "accuracy/errors.h"
 #include "accuracy/spaces.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "base/vectors.h"
-#include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
+#include "mesh/small_patches.h"
+#include "plan/survey.h"
 #include "scene/coverings.h"
 #include "visibility/occluder.h"
 
@@ -17,17 +19,6 @@
 namespace patchlight {
 namespace {
 
-// Particles start in batches, until enough of them have arrived in the surroundings, or so many batches have started.
-constexpr std::uint32_t particles_of_batch = 1 << 14;
-constexpr std::uint32_t max_batches = 12;
-constexpr std::size_t enough_hits = 1 << 13;
-constexpr std::uint32_t max_bounces = 16;
-
-// A side with less of its area in an enclosed space belongs to the surroundings, e.g. the ground below a house.
-constexpr double least_enclosed_part = 0.25;
-
-double area_of(const Scene& scene, PolygonIndex polygon) { return area_vector(corner_points(scene, polygon)).norm(); }
-
 // The width of a rectangle with the area of a polygon, as long as its bounds.
 double width_of(const Scene& scene, PolygonIndex polygon) {
   Box box;
@@ -37,14 +28,14 @@ double width_of(const Scene& scene, PolygonIndex polygon) {
 
 // Some patches on each large polygon, and at least one on each other.
 PatchMesh coarse_mesh(const Scene& scene, const KeptSides& sides) {
-  constexpr double patches = 2000;
-  const double usual = std::sqrt(kept_area(scene, sides) / patches);
+  const double usual = std::sqrt(kept_area(scene, sides) / 2000);
   std::vector<double> coarsest;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) coarsest.push_back(0.5 * width_of(scene, p));
   return tessellate(scene, sides, {usual, std::move(coarsest)});
 }
 
-// Marks the polygons that have a side with such patches.
+// Marks the polygons that have a side with such patches. A side with less than a quarter of its area in an enclosed
+// space belongs to the surroundings, e.g. the ground below a house.
 std::vector<std::uint8_t> polygons_with(const Eigen::VectorXd& enclosed, const PatchMesh& mesh) {
   std::vector<std::uint8_t> is_goal(mesh.first_patch.size() / 2, 0);
   for (PolygonIndex p = 0; p < is_goal.size(); ++p) {
@@ -53,7 +44,7 @@ std::vector<std::uint8_t> polygons_with(const Eigen::VectorXd& enclosed, const P
       double all = 0;
       double inside = 0;
       for (PatchIndex i = begin; i < end; ++i) all += mesh.area[i], inside += enclosed[i] * mesh.area[i];
-      if (inside > 0 && inside >= least_enclosed_part * all) is_goal[p] = 1;
+      if (inside > 0 && inside >= 0.25 * all) is_goal[p] = 1;
     }
   }
   return is_goal;
@@ -129,7 +120,7 @@ struct Arrived {
 
 void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
                  std::vector<Particle> particles, std::uint32_t seed, Arrived& arrived) {
-  for (std::uint32_t bounce = 0; bounce < max_bounces && !particles.empty(); ++bounce) {
+  for (std::uint32_t bounce = 0; bounce < 16 && !particles.empty(); ++bounce) {
     std::vector<Ray> rays;
     for (const Particle& particle : particles) rays.push_back(particle.ray);
     const auto hits = faces.first_hits(rays);
@@ -153,13 +144,14 @@ void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<st
   }
 }
 
+// Particles start in batches, until enough of them have arrived in the surroundings, or many batches have started.
 Arrived trace_importance(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
                          const Sources& sources, std::uint64_t seed) {
   Arrived arrived;
-  for (std::uint32_t batch = 0; batch < max_batches && arrived.hits.size() < enough_hits; ++batch) {
-    const std::uint32_t key = hash({seed, batch, 0x676f616c});
+  for (std::uint32_t batch = 0; batch < 12 && arrived.hits.size() < 1 << 13; ++batch) {
+    const std::uint32_t key = hash({seed, batch, stream::goal_batch});
     std::vector<Particle> particles;
-    for (const auto& u : scrambled_sobol(particles_of_batch, key)) particles.push_back(sources.at(u));
+    for (const auto& u : scrambled_sobol(1 << 14, key)) particles.push_back(sources.at(u));
     trace_batch(scene, faces, is_goal, std::move(particles), key, arrived);
   }
   return arrived;
@@ -169,6 +161,43 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
   std::vector<SidePoint> places;
   for (const ImportanceHit& hit : hits) places.push_back(hit.at);
   return PatchLookup(mesh).patches_at(places);
+}
+
+// The importance of each patch, and whether it has enough hits to tell its parts apart. Otherwise it shares its
+// importance equally among its parts, whose own hits would be chance.
+struct PatchImportance {
+  std::vector<double> of_patch;
+  std::vector<std::uint8_t> has_many_hits;
+};
+
+PatchImportance importance_of(const PatchMesh& mesh, const std::vector<ImportanceHit>& hits) {
+  PatchImportance found{std::vector<double>(mesh.size(), 0), {}};
+  std::vector<double> number(mesh.size(), 0);
+  const std::vector<PatchIndex> met = patches_of(hits, mesh);
+  for (std::size_t k = 0; k < met.size(); ++k) {
+    if (met[k] == no_patch) continue;
+    const double size = std::sqrt(mesh.area[met[k]]);
+    number[met[k]] += 1;
+    found.of_patch[met[k]] += std::pow(std::min(1.0, size * hits[k].closeness), mesh_order);
+  }
+  for (const double n : number) found.has_many_hits.push_back(n >= 8 ? 1 : 0);
+  return found;
+}
+
+// The importance of the patches of a refined mesh.
+PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
+                                 const std::vector<ImportanceHit>& hits) {
+  const double left = std::pow(0.5, mesh_order) / 4;
+  PatchImportance now = importance_of(refined.mesh, hits);
+  std::vector<int> parts(before.of_patch.size(), 0);
+  for (const PatchIndex parent : refined.parent) ++parts[parent];
+  for (PatchIndex i = 0; i < refined.mesh.size(); ++i) {
+    const PatchIndex parent = refined.parent[i];
+    if (before.has_many_hits[parent] != 0) continue;
+    now.of_patch[i] = before.of_patch[parent] * (parts[parent] > 1 ? left : 1);
+    now.has_many_hits[i] = 0;
+  }
+  return now;
 }
 
 }  // namespace
@@ -215,49 +244,6 @@ PatchEdges edges_for(const Scene& scene, double max_edge, const Goal* goal) {
     if (goal->is_goal[p] == 0) coarsest[p] = 2 * width_of(scene, p);
   return {max_edge, std::move(coarsest)};
 }
-
-namespace {
-
-// A patch with fewer hits shares its importance equally among its parts, whose own hits would be chance.
-constexpr double few_hits = 8;
-
-// The importance of each patch, and whether it has enough hits to tell its parts apart.
-struct PatchImportance {
-  std::vector<double> of_patch;
-  std::vector<std::uint8_t> has_many_hits;
-};
-
-PatchImportance importance_of(const PatchMesh& mesh, const std::vector<ImportanceHit>& hits) {
-  PatchImportance found{std::vector<double>(mesh.size(), 0), {}};
-  std::vector<double> number(mesh.size(), 0);
-  const std::vector<PatchIndex> met = patches_of(hits, mesh);
-  for (std::size_t k = 0; k < met.size(); ++k) {
-    if (met[k] == no_patch) continue;
-    const double size = std::sqrt(mesh.area[met[k]]);
-    number[met[k]] += 1;
-    found.of_patch[met[k]] += std::pow(std::min(1.0, size * hits[k].closeness), mesh_order);
-  }
-  for (const double n : number) found.has_many_hits.push_back(n >= few_hits ? 1 : 0);
-  return found;
-}
-
-// The importance of the patches of a refined mesh.
-PatchImportance importance_after(const PatchImportance& before, const Refinement& refined,
-                                 const std::vector<ImportanceHit>& hits) {
-  const double left = std::pow(0.5, mesh_order) / 4;
-  PatchImportance now = importance_of(refined.mesh, hits);
-  std::vector<int> parts(before.of_patch.size(), 0);
-  for (const PatchIndex parent : refined.parent) ++parts[parent];
-  for (PatchIndex i = 0; i < refined.mesh.size(); ++i) {
-    const PatchIndex parent = refined.parent[i];
-    if (before.has_many_hits[parent] != 0) continue;
-    now.of_patch[i] = before.of_patch[parent] * (parts[parent] > 1 ? left : 1);
-    now.has_many_hits[i] = 0;
-  }
-  return now;
-}
-
-}  // namespace
 
 PatchMesh cut_by_importance(PatchMesh mesh, const Goal& goal, std::size_t patches) {
   const auto is_around = [&](const PatchMesh& of, PatchIndex i) { return goal.is_goal[of.polygon[i]] == 0; };

@@ -1,61 +1,29 @@
 #include "plan/planned_scene.h"
 
+#include "base/tolerances.h"
 #include "light/photometry.h"
-#include "visibility/occluder.h"
+#include "scene/all_spectra.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// Every spectrum of a luminaire, sun, sky or material changed by change(spectrum); empty ones stay empty.
-template <typename Change>
-void change_light(Luminaire& luminaire, const Change& change) {
-  std::visit(
-      [&](auto& light) {
-        using Light = std::decay_t<decltype(light)>;
-        if constexpr (std::is_same_v<Light, WebLight>) {
-          light.watts_per_lumen = change(light.watts_per_lumen);
-        } else if constexpr (std::is_same_v<Light, SphericalLamp>) {
-          light.exitance = change(light.exitance);
-        } else {
-          light.intensity = change(light.intensity);
-        }
-      },
-      luminaire.light);
-}
-
-template <typename Change>
-Scene with_spectra(Scene scene, const Change& change) {
-  const auto apply = [&](Spectrum& spectrum) {
-    if (spectrum.size() > 0) spectrum = change(spectrum);
-  };
-  for (Material& material : scene.materials) {
-    for (Spectrum* s : {&material.reflectance, &material.transmittance, &material.specular_reflectance,
-                        &material.diffuse_transmittance, &material.exitance})
-      apply(*s);
-    if (material.texture) {
-      for (Spectrum& spectrum : material.texture->of_primaries) apply(spectrum);
-    }
-  }
-  for (Luminaire& luminaire : scene.luminaires) change_light(luminaire, change);
-  if (scene.sun) apply(scene.sun->normal_irradiance);
-  if (scene.sky) {
-    for (Spectrum* s : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
-      apply(*s);
-  }
+// The scene with every spectrum changed by change(spectrum); empty ones stay empty.
+Scene with_spectra(Scene scene, const auto& change) {
+  const auto apply = [&](Spectrum& spectrum, const SampledSpectrum*) { spectrum = change(spectrum); };
+  visit_shares(scene, apply);
+  visit_lights(scene, apply);
   return scene;
 }
 
 // That of 1 in every band; of colours 179, to the last bit.
 double luminance_of_ones(const Bands& bands) {
   const double ones = luminance(Spectrum::Ones(static_cast<Eigen::Index>(bands.size())), bands);
-  constexpr double rounding = 1e-9;
-  return std::abs(ones - luminous_efficacy) <= rounding * ones ? luminous_efficacy : ones;
+  return std::abs(ones - luminous_efficacy) <= tolerance_of_shapes * ones ? luminous_efficacy : ones;
 }
 
 // The same luminance without colour.
@@ -67,22 +35,17 @@ Scene without_colour(Scene scene) {
   });
 }
 
-bool is_skipped_by_force(const Plan& plan, Effect effect) {
-  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
-    return decision.effect == effect && decision.forced && !decision.simulate;
+bool is_forced(const Plan& plan, Effect effect, bool simulate) {
+  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [&](const Decision& decision) {
+    return decision.effect == effect && decision.forced && decision.simulate == simulate;
   });
 }
 
-bool is_forced(const Plan& plan, Effect effect) {
-  return std::any_of(plan.decisions.begin(), plan.decisions.end(), [effect](const Decision& decision) {
-    return decision.effect == effect && decision.forced && decision.simulate;
-  });
-}
+bool is_skipped_by_force(const Plan& plan, Effect effect) { return is_forced(plan, effect, false); }
 
 // The scene with the lights that are not left out, and without color when that is skipped by force.
-template <typename LeftOut>
 std::shared_ptr<const Scene> with_light(const std::shared_ptr<const Scene>& scene, const Plan& plan,
-                                        const LeftOut& left_out) {
+                                        const auto& left_out) {
   const bool no_luminaires = left_out(Effect::luminaires) && !scene->luminaires.empty();
   const bool no_sun = left_out(Effect::sun) && scene->sun;
   const bool no_sky = left_out(Effect::sky) && scene->sky;
@@ -103,7 +66,7 @@ std::shared_ptr<const Scene> with_light(const std::shared_ptr<const Scene>& scen
 
 Occluder::Blockers blockers_of(const Plan& plan) {
   if (is_skipped_by_force(plan, Effect::occlusion)) return Occluder::Blockers::none;
-  return is_forced(plan, Effect::occlusion) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
+  return is_forced(plan, Effect::occlusion, true) ? Occluder::Blockers::all : Occluder::Blockers::inside_hull;
 }
 
 Reflections reflections_of(const Plan& plan) {
@@ -120,7 +83,7 @@ std::shared_ptr<const Scene> scene_as_planned(const std::shared_ptr<const Scene>
 }
 
 Scene in_bands(Scene scene, const std::vector<Eigen::Index>& bands) {
-  // 1. What they stand for.
+  // 1. The bands.
   const Bands all = bands_of(scene);
   scene.bands.clear();
   double weight = 0;
@@ -136,11 +99,7 @@ Scene in_bands(Scene scene, const std::vector<Eigen::Index>& bands) {
     if ((material.transmittance > 0).any())
       material.transmittance = material.transmittance.max(std::numeric_limits<double>::min());
   }
-  return with_spectra(std::move(scene), [&](const Spectrum& spectrum) {
-    Spectrum chosen(static_cast<Eigen::Index>(bands.size()));
-    for (Eigen::Index k = 0; k < chosen.size(); ++k) chosen[k] = spectrum[bands[static_cast<std::size_t>(k)]];
-    return chosen;
-  });
+  return with_spectra(std::move(scene), [&](const Spectrum& spectrum) { return Spectrum(spectrum(bands)); });
 }
 
 Scene in_one_band(Scene scene, Eigen::Index band) {

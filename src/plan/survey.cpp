@@ -1,14 +1,16 @@
 #include "plan/survey.h"
 
 #include "patchlight/base/diagnostics.h"
-#include "patchlight/scene/scene.h"
 
+#include "base/near_match.h"
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "light/photometry.h"
 #include "plan/first_few.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
+#include "scene/room_body.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
 #include "scene/triangulate.h"
@@ -17,14 +19,88 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <string>
+#include <sstream>
+#include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 namespace {
+
+constexpr std::array lamp_words = {"lights",       "lamp",     "lamps",     "desklamp",  "floorlamp",  "emit",
+                                   "emitter",      "emitters", "emission",  "emissive",  "glow",       "emitting",
+                                   "glowing",      "bulb",     "bulbs",     "neon",      "luminous",   "lightbulb",
+                                   "ceilinglight", "led",      "spotlight", "downlight", "floodlight", "arealight"};
+
+// Compounds, those of other languages among them, end in these.
+constexpr std::array lamp_endings = {"lampe", "lampen", "leuchte", "leuchten", "luminaire", "luminaires"};
+
+// After "light" these make a colour or a kind of material.
+constexpr std::array<std::string_view, 24> light_things = {
+    "grey", "gray", "brown", "blue",  "green", "red",      "yellow", "beige",  "pink", "orange", "purple", "cyan",
+    "wood", "oak",  "pine",  "maple", "stone", "concrete", "brick",  "marble", "tan",  "weight", "steel",  "metal"};
+
+bool is_small_letter(char letter) { return letter >= 'a' && letter <= 'z'; }
+
+bool is_capital_letter(char letter) { return letter >= 'A' && letter <= 'Z'; }
+
+// In small letters.
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const bool is_letter =
+        is_small_letter(name[k]) || is_capital_letter(name[k]) || static_cast<unsigned char>(name[k]) >= 0x80;
+    const bool begins = is_capital_letter(name[k]) && k > 0 && is_small_letter(name[k - 1]);
+    if ((!is_letter || begins) && !words.back().empty()) words.emplace_back();
+    if (is_letter) words.back() += name[k];
+  }
+  if (words.back().empty()) words.pop_back();
+  for (std::string& word : words) word = in_lower_case(std::move(word));
+  return words;
+}
+
+bool is_lamp_word(const std::string& word) {
+  const auto ends = [&](const char* ending) { return word.ends_with(ending); };
+  return std::find(lamp_words.begin(), lamp_words.end(), word) != lamp_words.end() ||
+         std::any_of(lamp_endings.begin(), lamp_endings.end(), ends);
+}
+
+constexpr const char* usual_sky = "read.daylight.sky=overcast:10000lx";
+
+// The reader's hints, else the materials with a name like a lamp's.
+std::vector<LampHint> possible_lamps(const Scene& scene) {
+  if (!scene.lamp_hints.empty()) return scene.lamp_hints;
+  std::vector<LampHint> hints;
+  for (const Material& material : scene.materials) {
+    // The radiance of a lit panel, of 1,800 cd/m^2.
+    if (is_name_of_lamp(material.name)) hints.push_back({material.name, Spectrum::Constant(1, 10), "its name"});
+  }
+  return hints;
+}
+
+// As one types it in a shell.
+std::string setting_for(const LampHint& hint) {
+  std::ostringstream text;
+  text << hint.material << ".radiance=" << hint.radiance.format(Eigen::IOFormat(6, Eigen::DontAlignCols, ","));
+  return "read.settings " + shell_word(text.str());
+}
+
+std::string advice_on_lamps(const std::vector<LampHint>& hints) {
+  std::string advice;
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, hints.size()); ++k)
+    advice +=
+        "\nhint: '" + hints[k].material + "' looks like a lamp (" + hints[k].reason + "): " + setting_for(hints[k]);
+  return advice;
+}
+
+std::string advice_on_other_light(const Scene& scene, const std::optional<Solid>& hull) {
+  if (hull && is_room(scene, *hull)) {
+    return "\nhint: the room has no window (" + place_of(scene, scene.polygons[hull->polygons.front()]) +
+           "); create a scene with a lamp: patchlight init MODEL -o SCENE.toml";
+  }
+  return std::string("\nhint: add daylight") + (hull ? " from outside: " : ": ") + usual_sky +
+         "\nhint: create a scene with lamps or daylight: patchlight init MODEL -o SCENE.toml";
+}
 
 std::vector<Box> boxes_of_polygons(const Scene& scene) {
   std::vector<Box> boxes(scene.polygons.size());
@@ -44,18 +120,17 @@ std::optional<double> near_distance(const Scene& scene, PolygonIndex polygon, co
   return least < radius ? std::optional(least) : std::nullopt;
 }
 
-// Farther off than masts are high, and than the model is long.
-constexpr double farthest_luminaire = 30;  // metres
-
+// Luminaires farther from the model than masts are high, and than the model is long.
 Diagnostics problems_of_far_ones(const Scene& scene) {
   if (scene.luminaires.empty()) return {};
   const Box box = bounds(scene);
   const double length = box.diagonal().norm();
-  double farthest = std::max(length, farthest_luminaire);
+  const double plausible = std::max(length, 30.0);
+  double farthest = plausible;
   std::vector<std::string> far;
   for (const Luminaire& luminaire : scene.luminaires) {
     const double distance = box.exteriorDistance(luminaire.position);
-    if (distance <= std::max(length, farthest_luminaire)) continue;
+    if (distance <= plausible) continue;
     far.push_back("'" + luminaire.name + "' of " + luminaire.place);
     farthest = std::max(farthest, distance);
   }
@@ -68,12 +143,12 @@ Diagnostics problems_of_far_ones(const Scene& scene) {
            far.size()}};
 }
 
-// Spheres that faces cut: what of their light starts behind the face falls on its other side.
+// Spheres that faces cut: light that starts behind the face falls on its other side.
 Diagnostics problems_of_cut_ones(const Scene& scene) {
   std::size_t count = 0;
   std::string first;
   std::optional<BoxRow> row;
-  const double rounding = 1e-6 * extent_of(scene);  // a sphere that touches a face is not cut
+  const double rounding = Tolerances(extent_of(scene)).weld;  // a sphere that touches a face is not cut
   for (const Luminaire& luminaire : scene.luminaires) {
     const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
     if (sphere == nullptr) continue;
@@ -110,35 +185,29 @@ Diagnostics problems_with_luminaires(const Scene& scene) {
 // A model is between a part of a chair and a large building, or a site with buildings of some height. Meters.
 constexpr double smallest_plausible = 0.4;
 constexpr double largest_plausible = 150;
-constexpr double largest_plausible_height = 30;
 
 // Of a site one side is short: the height of its buildings or its terrain. Sides below a hundredth are flat.
 bool is_plausible(const Vector& sides) {
   const double longest = sides.maxCoeff();
   if (longest <= largest_plausible) return longest >= smallest_plausible;
-  return std::any_of(sides.begin(), sides.end(),
-                     [&](double side) { return side > 0.01 * longest && side <= largest_plausible_height; });
+  return std::any_of(sides.begin(), sides.end(), [&](double side) { return side > 0.01 * longest && side <= 30; });
 }
-
-// What a room measures: the guess is the unit that comes nearest, inches and feet only if they come nearer by a factor
-// of four. Metres.
-constexpr double usual_size = 6;
-constexpr double rarity = 4;
 
 struct Unit {
   const char* name;
   double metres;
-  double handicap;
+  double handicap;  // inches and feet are rare: they have to come nearer by a factor of four
 };
 constexpr std::array<Unit, 5> units = {
-    {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, rarity}, {"ft", 0.3048, rarity}}};
+    {{"m", 1, 1}, {"cm", 0.01, 1}, {"mm", 0.001, 1}, {"in", 0.0254, 4}, {"ft", 0.3048, 4}}};
 
+// The unit that brings the model nearest to the 6 m of a room.
 std::optional<UnitGuess> guess_unit(const Scene& scene, const Vector& sides) {
   if (scene.unit_stated || is_plausible(sides)) return std::nullopt;
   const double size = sides.maxCoeff();
   const double in_model_units = size / scene.metres_per_unit;
   const auto distance = [&](const Unit& unit) {
-    return std::abs(std::log(in_model_units * unit.metres / usual_size)) + std::log(unit.handicap);
+    return std::abs(std::log(in_model_units * unit.metres / 6)) + std::log(unit.handicap);
   };
   const Unit& best = *std::min_element(units.begin(), units.end(),
                                        [&](const Unit& a, const Unit& b) { return distance(a) < distance(b); });
@@ -185,7 +254,7 @@ std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
   };
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Polygon& polygon = scene.polygons[p];
-    const double area = area_vector(corner_points(scene, p)).norm();
+    const double area = area_of(scene, p);
     add(polygon.material, area);
     if (polygon.back_material) add(*polygon.back_material, area);
   }
@@ -201,17 +270,21 @@ std::string class_of(const std::string& name) {
   return name.starts_with("Ifc") && end != std::string::npos ? name.substr(0, end) + "_*" : name;
 }
 
+std::vector<ObjectFacts> largest_first(std::vector<ObjectFacts> all) {
+  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
+  return all;
+}
+
 std::vector<ObjectFacts> facts_of_objects(const Scene& scene) {
   std::vector<ObjectFacts> all(scene.groups.size());
   for (std::uint32_t group = 0; group < all.size(); ++group) all[group].name = group_name(scene, group);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     ObjectFacts& facts = all[scene.polygons[p].group];
     ++facts.faces;
-    facts.area += area_vector(corner_points(scene, p)).norm();
+    facts.area += area_of(scene, p);
   }
   std::erase_if(all, [](const ObjectFacts& facts) { return facts.faces == 0; });
-  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
-  return all;
+  return largest_first(std::move(all));
 }
 
 std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
@@ -225,33 +298,59 @@ std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
   }
   std::vector<ObjectFacts> all;
   for (const auto& [name, facts] : classes) all.push_back(facts);
-  std::stable_sort(all.begin(), all.end(), [](const ObjectFacts& a, const ObjectFacts& b) { return a.area > b.area; });
-  return all;
+  return largest_first(std::move(all));
 }
 
 }  // namespace
 
-const char* name_of(SkyKind kind) {
-  switch (kind) {
-    case SkyKind::uniform:
-      return "uniform";
-    case SkyKind::cie_overcast:
-      return "overcast";
-    case SkyKind::cie_clear:
-      return "clear";
-    case SkyKind::perez:
-      return "perez";
+bool is_name_of_lamp(const std::string& name) {
+  const std::vector<std::string> words = words_of(name);
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (is_lamp_word(words[k])) return true;
+    const bool is_of_thing =
+        k + 1 < words.size() && std::find(light_things.begin(), light_things.end(), words[k + 1]) != light_things.end();
+    if (words[k] == "light" && !is_of_thing) return true;
   }
-  return "";
+  return false;
+}
+
+std::string first_few(std::span<const std::string> names, std::size_t few) {
+  std::string list;
+  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
+  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
+}
+
+FirstLight first_light(const Scene& scene) {
+  const std::optional<Solid> hull = sealed_hull(scene);
+  const std::vector<LampHint> hints = possible_lamps(scene);
+  FirstLight light;
+  light.advice = "no material emits" + advice_on_lamps(hints) + advice_on_other_light(scene, hull);
+  const bool is_sealed = hull && is_room(scene, *hull);
+  if (!is_sealed) light.setting = usual_sky;
+  if (is_sealed && !hints.empty()) light.setting = setting_for(hints.front());
+  if (!hints.empty()) return light;
+  std::vector<std::string> names;
+  for (const Material& material : scene.materials) names.push_back(material.name);
+  light.advice += "\nhint: make a material emit, one of " + first_few(names) + ": read.settings MATERIAL.radiance=10";
+  return light;
+}
+
+const char* name_of(SkyKind kind) {
+  constexpr std::array names = {"uniform", "overcast", "clear", "perez"};
+  return names.at(static_cast<std::size_t>(kind));
+}
+
+std::size_t kept_side_count(const KeptSides& sides) {
+  const auto kept = [](const std::vector<std::uint8_t>& side) {
+    return static_cast<std::size_t>(std::count(side.begin(), side.end(), std::uint8_t{1}));
+  };
+  return kept(sides.front) + kept(sides.back);
 }
 
 SideCounts count_sides(const Scene& scene, Sides sides) {
   const Sides chosen = has_lamp(scene) || sides == Sides::both ? sides : Sides::front;
   const KeptSides kept = kept_sides(scene, chosen);
-  const auto count = [](const std::vector<std::uint8_t>& marks) {
-    return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), std::uint8_t{1}));
-  };
-  return {chosen, count(kept.front) + count(kept.back), kept_area(scene, kept), kept.notes};
+  return {chosen, kept_side_count(kept), kept_area(scene, kept), kept.notes};
 }
 
 Diagnostics problems_with_size(const Scene& scene) {
@@ -260,11 +359,9 @@ Diagnostics problems_with_size(const Scene& scene) {
 }
 
 Diagnostics problems_with_sensors(const Scene& scene) {
-  // A grid of half a metre over 150 x 150 m has as many.
-  constexpr std::size_t many_sensors = 100'000;
   std::size_t count = 0;
   for (const SensorGroup& group : scene.sensors) count += group.sensors.size();
-  if (count <= many_sensors) return {};
+  if (count <= 100'000) return {};  // a grid of half a meter over 150 x 150 m
   const auto fewer = [](const SensorGroup& a, const SensorGroup& b) { return a.sensors.size() < b.sensors.size(); };
   const SensorGroup& largest = *std::max_element(scene.sensors.begin(), scene.sensors.end(), fewer);
   Box box;
@@ -287,10 +384,8 @@ SceneReport survey(const Scene& scene) {
   report.materials = facts_of_materials(scene);
   report.objects = facts_of_objects(scene);
   report.classes = by_class(report.objects);
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    report.lamps += is_lamp(scene, p);
-    report.area += area_vector(corner_points(scene, p)).norm();
-  }
+  report.area = area_of_faces(scene);
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) report.lamps += is_lamp(scene, p);
 
   const Shells shells = shells_of(scene);
   report.shells = shells.count;

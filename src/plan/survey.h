@@ -3,14 +3,36 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sides.h"
 
-#include "plan/first_light.h"
-
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace patchlight {
+
+/// True when a word of the name is one for a lamp: "ceiling_light", "FloorLamp 2", "Deckenleuchte". Words end at
+/// letters that are none, at digits, and where a capital follows a small letter. "Lightweight" is another word, and
+/// "light grey" a colour.
+bool is_name_of_lamp(const std::string& name);
+
+/// "a, b, c" of up to `few` names, "and 3 more" of the rest.
+std::string first_few(std::span<const std::string> names, std::size_t few = 8);
+
+/// The area of a polygon, and of all polygons, each once, m^2.
+double area_of(const Scene& scene, PolygonIndex polygon);
+double area_of_faces(const Scene& scene);
+
+/// What lights a scene in which nothing emits.
+struct FirstLight {
+  std::string setting;  ///< of a request, as read.daylight.sky=overcast:10000lx; empty: it takes a scene file
+  std::string advice;   ///< all that can light it, `setting` among it, a problem and a "hint: " line for each remedy
+};
+
+/// Of a room that no daylight gets into, sealed_hull(), the material that looks like a lamp, or a luminaire in a scene
+/// file where none does; of other scenes the sky. The advice names materials that look like lamps with the settings
+/// that switch them on, and where daylight and luminaires are described. O(n log n) for n corners.
+FirstLight first_light(const Scene& scene);
 
 /// What of a scene is made of one material.
 struct MaterialFacts {
@@ -78,6 +100,9 @@ Diagnostics problems_with_sensors(const Scene& scene);
 
 /// The sky's kind as in a scene file.
 const char* name_of(SkyKind kind);
+
+/// How many sides are kept.
+std::size_t kept_side_count(const KeptSides& sides);
 
 /// The sides that kept_sides() chooses; all that can be said of a scene without a lamp is which are fronts.
 SideCounts count_sides(const Scene& scene, Sides sides);

@@ -8,7 +8,7 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "base/vectors.h"
-#include "pipeline/relative_errors.h"
+#include "pipeline/radiosity_errors.h"
 #include "plan/planned_scene.h"
 #include "report/room_light.h"
 #include "scene/triangulate.h"

@@ -6,7 +6,7 @@
 #include "gather/sensor_places.h"
 #include "lighting/light_paths.h"
 #include "lighting/mirrored_irradiance.h"
-#include "pipeline/lamps_apart.h"
+#include "pipeline/exchange_and_light.h"
 #include "pipeline/radiosity_errors.h"
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"

@@ -3,7 +3,9 @@
 #include "patchlight/views/picture.h"
 
 #include "light/photometry.h"
+#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
+#include "pipeline/exchange_and_light.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/world.h"
 #include "visibility/occluder.h"

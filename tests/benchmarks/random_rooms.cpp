@@ -21,7 +21,7 @@
 #include "cli/solve_input.h"
 #include "files/sha256.h"
 #include "output/file/whole_file.h"
-#include "pipeline/relative_errors.h"
+#include "pipeline/radiosity_errors.h"
 #include "pipeline/world.h"
 #include "verify/path_tracer.h"
 

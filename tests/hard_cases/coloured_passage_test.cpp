@@ -2,7 +2,7 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/simulate.h"
 
-#include "pipeline/ray_form_factors.h"
+#include "pipeline/form_factors.h"
 #include "scene/specular_faces.h"
 #include "support/scenes.h"
 #include "transport/ray_transport.h"

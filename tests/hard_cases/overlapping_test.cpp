@@ -3,7 +3,7 @@
 #include "patchlight/transport/exchange.h"
 
 #include "mesh/mesher.h"
-#include "pipeline/ray_form_factors.h"
+#include "pipeline/form_factors.h"
 #include "scene/coverings.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"

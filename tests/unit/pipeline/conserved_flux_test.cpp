@@ -1,6 +1,5 @@
-#include "pipeline/conserved_flux.h"
-
 #include "base/vectors.h"
+#include "pipeline/solve_with_rays.h"
 
 #include <gtest/gtest.h>
 

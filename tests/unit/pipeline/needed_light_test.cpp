@@ -1,4 +1,4 @@
-#include "pipeline/needed_light.h"
+#include "pipeline/solve_with_rays.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/relative_errors.h"
+#include "pipeline/radiosity_errors.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
-#include "pipeline/textured_patches.h"
-
 #include "patchlight/simulate.h"
 
 #include "mesh/mesher.h"
+#include "pipeline/problem_of.h"
 #include "scene/less_detail.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-#include "plan/close_lamps.h"
-
+#include "plan/notes.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 

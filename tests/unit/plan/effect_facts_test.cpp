@@ -1,5 +1,4 @@
-#include "plan/effect_facts.h"
-
+#include "plan/decide.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

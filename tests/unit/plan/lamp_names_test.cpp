@@ -1,4 +1,4 @@
-#include "plan/lamp_names.h"
+#include "plan/survey.h"
 
 #include <gtest/gtest.h>
 

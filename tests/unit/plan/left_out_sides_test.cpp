@@ -1,7 +1,6 @@
-#include "plan/left_out_sides.h"
-
 #include "patchlight/plan/plan.h"
 
+#include "plan/notes.h"
 #include "support/scenes.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "plan/choose_storage.h"
 #include "plan/memory.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"

@@ -1,10 +1,9 @@
-#include "plan/shadow_lines.h"
-
 #include "patchlight/plan/plan.h"
 
 #include "lighting/direct_irradiance.h"
 #include "lighting/lighting.h"
 #include "mesh/mesher.h"
+#include "plan/planned_lines.h"
 #include "scene/repair.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"

@@ -16,12 +16,11 @@ struct RayFormFactors {
   PatchMesh mesh;
   RayExchange exchange;
   Eigen::VectorXd area;     ///< m^2, exposed, of what patches hold
-  Eigen::VectorXd row_sum;  ///< what each patch sees: both of light of the mean of all colours
+  Eigen::VectorXd row_sum;  ///< the share that each patch sees: both of light of the mean of all colors
   Diagnostics notes = {};   ///< on polygons that lie one on the other
 };
 
-/// As find_form_factors() finds all pairs: what Steps::ray_exchange can give. \throws InputError, MemoryError,
-/// Cancelled.
+/// The counterpart of find_form_factors(), for Steps::ray_exchange. \throws InputError, MemoryError, Cancelled.
 RayFormFactors find_ray_form_factors(const Scene& scene, const Request& request, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -2,7 +2,9 @@
 
 #include "patchlight/solve/solve.h"
 
+#include "pipeline/exchange_and_light.h"
 #include "solve/pockets.h"
+#include "solve/solved_bands.h"
 
 #include <Eigen/Core>
 #include <array>
@@ -53,5 +55,32 @@ struct ConservingSolution {
 /// where there is no closed space or one of both solutions does not converge. \throws Cancelled.
 ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
+
+/// The problem for rows of rays, in the bands that need it: the light of each other band, and its errors, are those of
+/// one of these times a factor.
+struct NeededLight {
+  SolvedBands bands;
+  RadiosityProblem problem;  ///< for the rows: exitance without lamps apart, whose light is direct
+  Field of_lamps;            ///< variance of the irradiance by lamps apart, (W/m^2)^2
+  Field of_others;           ///< of that by luminaires, sun, sky and mirrors; empty where there is none
+};
+
+/// All bands where each is to be solved, SolverOptions::every_band or with a reference.
+NeededLight needed_light(const RayLight& light, const SolverOptions& options);
+
+/// A solution by rows of rays, the standard error of its irradiance, and the part of the error that patches have in
+/// common, W/m^2.
+struct RaySolution {
+  Solution solution;
+  Field standard_error;
+  std::vector<Field> correlated_errors;  ///< Simulation::correlated_errors
+};
+
+/// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
+/// half of the rays, and smooths the light from other patches: docs/theory/ray-method-solution.md. The error combines
+/// the difference of the halves, the error of the row sums, which both halves share, the bias of smoothing, and the
+/// reflections of all of these. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
+RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
+                            const RayLight& light, const TransportFacts& facts, const SolverOptions& options);
 
 }  // namespace patchlight
