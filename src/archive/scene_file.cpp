@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 
 #include "archive/file_names.h"
 #include "archive/json_values.h"

@@ -7,8 +7,7 @@
 #include "cli/parse_value.h"
 #include "cli/run_options.h"
 #include "output/image/write_image.h"
-#include "output/image/write_lightmap.h"
-#include "output/vtk/write_points.h"
+#include "output/vtk/write_vtk.h"
 #include "scene/projection.h"
 
 #include <algorithm>
