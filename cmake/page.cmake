@@ -42,7 +42,7 @@ function(write_function name text)
                         "std::string_view ${name}() { return {${name}_text, sizeof ${name}_text - 1}; }\n\n")
 endfunction()
 
-file(WRITE ${OUTPUT} "#include \"page/page_parts.h\"\n\nnamespace patchlight {\n\n")
+file(WRITE ${OUTPUT} "#include \"page/write_page.h\"\n\nnamespace patchlight {\n\n")
 write_function(page_template "${page}")
 write_function(page_scripts "${scripts}")
 file(APPEND ${OUTPUT} "}  // namespace patchlight\n")

@@ -17,8 +17,6 @@
 #include "patchlight/light/material.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/output/provenance.h"
-#include "patchlight/output/write_image.h"
 #include "patchlight/output/write_result.h"
 #include "patchlight/plan/effects.h"
 #include "patchlight/plan/plan.h"

@@ -1,7 +1,7 @@
 #include "archive/form_factor_files.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 
 #include "archive/file_names.h"
 #include "archive/json_values.h"

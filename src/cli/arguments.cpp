@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 
 #include "base/near_match.h"
 #include "cli/command_options.h"

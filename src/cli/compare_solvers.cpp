@@ -10,7 +10,7 @@
 #include "cli/summary.h"
 #include "cli/text_table.h"
 #include "output/file/whole_file.h"
-#include "output/report/write_comparison.h"
+#include "output/report/write_study.h"
 #include "page/write_page.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include "cli/summary.h"
 #include "cli/text_table.h"
 #include "output/file/whole_file.h"
-#include "output/report/write_verification.h"
+#include "output/report/write_checks.h"
 #include "pipeline/world.h"
 #include "plan/notes.h"
 

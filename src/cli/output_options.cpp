@@ -10,6 +10,7 @@
 #include "output/image/write_image.h"
 #include "output/image/write_lightmap.h"
 #include "output/vtk/write_points.h"
+#include "output/vtk/write_vtk.h"
 
 #include <algorithm>
 #include <bit>

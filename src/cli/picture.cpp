@@ -1,12 +1,12 @@
 #include "cli/picture.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/write_image.h"
+#include "patchlight/output/write_result.h"
 
 #include "base/rounded.h"
 #include "cli/output_options.h"
 #include "output/image/write_image.h"
-#include "render/lens.h"
+#include "render/camera.h"
 
 #include <algorithm>
 #include <bit>

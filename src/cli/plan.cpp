@@ -8,7 +8,7 @@
 #include "cli/summary.h"
 #include "mesh/nested_mesh.h"
 #include "output/file/whole_file.h"
-#include "output/report/write_survey.h"
+#include "output/report/write_checks.h"
 #include "pipeline/expected_cost.h"
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"

@@ -15,7 +15,6 @@
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
-#include "output/image/write_lightmap.h"
 #include "page/write_page.h"
 #include "pipeline/world.h"
 #include "scene/extent.h"

@@ -5,7 +5,7 @@
 #include "cli/progress.h"
 #include "cli/text_table.h"
 #include "output/file/whole_file.h"
-#include "output/report/write_verification.h"
+#include "output/report/write_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,20 +2,16 @@
 
 #include "patchlight/views/picture.h"
 
+#include "base/tolerances.h"
 #include "light/photometry.h"
 #include "render/tone_map.h"
 #include "scene/triangulate.h"
-#include "views/surroundings.h"
+#include "views/solved_light.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <new>
 #include <numbers>
-#include <numeric>
-#include <span>
-#include <stdexcept>
 #include <zlib.h>
 
 namespace patchlight {
@@ -41,27 +37,6 @@ std::string deflated(std::string_view bytes) {
   return out;
 }
 
-}  // namespace
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-    std::uint32_t group = 0;
-    for (std::size_t byte = 0; byte < 3; ++byte)
-      group = group << 8 | (byte < count ? static_cast<std::uint8_t>(bytes[k + byte]) : 0U);
-    for (std::size_t letter = 0; letter < 4; ++letter)
-      text += letter <= count ? letters[group >> (18 - 6 * letter) & 63U] : '=';
-  }
-  return text;
-}
-
-std::string packed_text(std::string_view bytes, std::size_t width) { return base64(deflated(by_planes(bytes, width))); }
-
-namespace {
-
 // One side of a polygon, and how it is drawn.
 struct DrawnSide {
   PatchRange patches;
@@ -76,10 +51,9 @@ struct DrawnSide {
   std::size_t saving() const { return size() > triangles ? size() - triangles : 0; }
 };
 
-// Does no part of a patch lie free? Its exposed area is then rounding.
+// True when no part of a patch lies free: its exposed area is then rounding.
 bool is_covered(const Simulation& simulation, PatchIndex patch) {
-  constexpr double least_exposed = 1e-6;
-  return simulation.problem.area[patch] <= least_exposed * simulation.mesh.area[patch];
+  return simulation.problem.area[patch] <= tolerance_of_coordinates * simulation.mesh.area[patch];
 }
 
 DrawnSide drawn_side(const SolvedSurface& surface, const PatchRange& patches) {
@@ -181,39 +155,6 @@ DrawnFaces without_unused(DrawnFaces drawn) {
   return drawn;
 }
 
-}  // namespace
-
-DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_t most) {
-  const PatchMesh& mesh = surface.simulation.mesh;
-  DrawnFaces drawn;
-  drawn.vertices = mesh.vertices;
-  drawn.colours = tone_map(surface.radiance_at_vertices, exposure, bands_of(surface.scene));
-  if (mesh.size() <= most) {
-    draw_patches(drawn, surface.simulation, {0, mesh.size()});
-    return drawn.covered == 0 ? drawn : without_unused(std::move(drawn));
-  }
-  std::vector<DrawnSide> sides = all_sides(surface);
-  std::size_t faces = mesh.size();
-  std::erase_if(sides, [&](const DrawnSide& side) {
-    if (!side.is_covered) return false;
-    drawn.covered += side.size();
-    faces -= side.size();
-    return true;
-  });
-  sides = thinned(std::move(sides), faces, most);
-  std::sort(sides.begin(), sides.end(),
-            [](const DrawnSide& a, const DrawnSide& b) { return a.patches.begin < b.patches.begin; });
-  drawn.left_out = faces;
-  for (const DrawnSide& side : sides) {
-    drawn.left_out -= side.size();
-    if (side.whole) draw_whole(drawn, surface, side, exposure);
-    if (!side.whole) draw_patches(drawn, surface.simulation, side.patches);
-  }
-  return without_unused(std::move(drawn));
-}
-
-namespace {
-
 using Json = nlohmann::ordered_json;
 using Colours = std::vector<std::array<std::uint8_t, 3>>;
 
@@ -255,22 +196,64 @@ Field radiance_of_sky(const SolvedSurface& surface) {
 
 }  // namespace
 
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+    std::uint32_t group = 0;
+    for (std::size_t byte = 0; byte < 3; ++byte)
+      group = group << 8 | (byte < count ? static_cast<std::uint8_t>(bytes[k + byte]) : 0U);
+    for (std::size_t letter = 0; letter < 4; ++letter)
+      text += letter <= count ? letters[group >> (18 - 6 * letter) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string packed_text(std::string_view bytes, std::size_t width) { return base64(deflated(by_planes(bytes, width))); }
+
+DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_t most) {
+  const PatchMesh& mesh = surface.simulation.mesh;
+  DrawnFaces drawn;
+  drawn.vertices = mesh.vertices;
+  drawn.colours = tone_map(surface.radiance_at_vertices, exposure, bands_of(surface.scene));
+  if (mesh.size() <= most) {
+    draw_patches(drawn, surface.simulation, {0, mesh.size()});
+    return drawn.covered == 0 ? drawn : without_unused(std::move(drawn));
+  }
+  std::vector<DrawnSide> sides = all_sides(surface);
+  std::size_t faces = mesh.size();
+  std::erase_if(sides, [&](const DrawnSide& side) {
+    if (!side.is_covered) return false;
+    drawn.covered += side.size();
+    faces -= side.size();
+    return true;
+  });
+  sides = thinned(std::move(sides), faces, most);
+  std::sort(sides.begin(), sides.end(),
+            [](const DrawnSide& a, const DrawnSide& b) { return a.patches.begin < b.patches.begin; });
+  drawn.left_out = faces;
+  for (const DrawnSide& side : sides) {
+    drawn.left_out -= side.size();
+    if (side.whole) draw_whole(drawn, surface, side, exposure);
+    if (!side.whole) draw_patches(drawn, surface.simulation, side.patches);
+  }
+  return without_unused(std::move(drawn));
+}
+
 std::vector<Look> looks_of(const SolvedSurface& surface, double exposure) {
   const Simulation& simulation = surface.simulation;
   if (simulation.enclosed.size() == 0) return {{"natural", exposure}};
   const Field radiance = display_radiance(simulation);
   const Eigen::VectorXd inside = simulation.problem.area.cwiseProduct(simulation.enclosed);
   const Eigen::VectorXd outside = simulation.problem.area - inside;
-  const auto is_lit = [&](const Eigen::VectorXd& weight) {
-    return ((radiance.rowwise().maxCoeff() > 0) && (weight.array() > 0)).any();
-  };
-  if (!is_lit(inside) || !is_lit(outside)) return {{"natural", exposure}};
+  if (!is_lit(radiance, inside) || !is_lit(radiance, outside)) return {{"natural", exposure}};
   const Bands bands = bands_of(surface.scene);
   const Look of_inside{"natural, exposed for the inside", exposure_for(radiance, inside, bands)};
   const Look of_outside{"natural, exposed for the outside", exposure_for(radiance, outside, bands)};
   const auto ratio = [exposure](const Look& look) { return std::abs(std::log(exposure / look.exposure)); };
-  const bool for_inside = ratio(of_inside) <= ratio(of_outside);
-  if (for_inside) return {{of_inside.name, exposure}, of_outside};
+  if (ratio(of_inside) <= ratio(of_outside)) return {{of_inside.name, exposure}, of_outside};
   return {{of_outside.name, exposure}, of_inside};
 }
 

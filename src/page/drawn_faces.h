@@ -32,10 +32,10 @@ nlohmann::ordered_json packed_array(std::span<const Number> values, std::size_t 
           {"packed", packed_text(bytes, sizeof(Number))}};
 }
 
-/// What a page draws of a solved surface. A row has the values of one patch, or the means over all patches of one side
+/// A solved surface as a page draws it. A row has the values of one patch, or the means over all patches of one side
 /// of a polygon, where there are too many.
 struct DrawnFaces {
-  std::vector<Point> vertices;                        ///< metres
+  std::vector<Point> vertices;                        ///< meters
   std::vector<std::array<std::uint8_t, 3>> colours;   ///< per vertex: as it looks, sRGB
   std::vector<std::array<std::uint32_t, 4>> corners;  ///< per face, counter-clockwise; a triangle repeats its last
   std::vector<std::uint32_t> row;                     ///< per face
@@ -45,7 +45,7 @@ struct DrawnFaces {
 };
 
 /// The faces of a surface that can be seen, at most `most` of them: patches, and where these are too many, whole sides
-/// of polygons in place of those patches that differ least from their mean, at last without the smallest. Colours are
+/// of polygons in place of those patches that differ least from their mean, at last without the smallest. Colors are
 /// those of `exposure`. O(n log n).
 DrawnFaces drawn_faces(const SolvedSurface& surface, double exposure, std::size_t most);
 
@@ -59,8 +59,8 @@ struct Look {
 /// for those of the two that it is not made for. The first is that of `exposure`.
 std::vector<Look> looks_of(const SolvedSurface& surface, double exposure);
 
-/// Per look its name, exposure and colours per vertex of at most `most_faces` faces (drawn_faces()), and where there is
-/// a sky the colours of sky and ground in the directions of sky_directions().
+/// Per look its name, exposure and colors per vertex of at most `most_faces` faces (drawn_faces()), and where there is
+/// a sky the colors of sky and ground in the directions of sky_directions().
 nlohmann::ordered_json looks_part(const SolvedSurface& surface, double exposure, std::size_t most_faces);
 
 /// Unit directions from the nadir to the zenith, ring by ring, with the number of directions in a ring; null without a

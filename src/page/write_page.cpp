@@ -4,15 +4,14 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
 #include "output/plot/write_sensor_map.h"
 #include "output/report/report_json.h"
-#include "output/report/write_comparison.h"
 #include "output/report/write_study.h"
 #include "page/drawn_faces.h"
-#include "page/page_parts.h"
 #include "pipeline/world.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
@@ -23,12 +22,8 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace patchlight {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -79,10 +74,7 @@ Json sensor_maps(const Scene& scene, const Readings& readings) {
   return maps;
 }
 
-// A page has so many faces at most; the model of a larger solution is drawn with fewer.
-constexpr std::size_t most_drawn_faces = 150'000;
-
-// Corners as multiples of the bounds' sizes over 65535: .15 mm in a room of ten metres.
+// Corners as multiples of the bounds' sizes over 65535: .15 mm in a room of ten meters.
 Json positions_part(const std::vector<Point>& vertices) {
   Box box;
   for (const Point& vertex : vertices) box.extend(vertex);
@@ -102,32 +94,23 @@ Json positions_part(const std::vector<Point>& vertices) {
 }
 
 // Means by area over the patches of each row.
-class RowMeans {
- public:
-  RowMeans(const DrawnFaces& drawn, const PatchMesh& mesh) : drawn_(drawn), mesh_(mesh) {}
-
-  Field of(const FieldView& values) const {
-    Field means(static_cast<Eigen::Index>(drawn_.patches.size()), values.cols());
-    for (Eigen::Index row = 0; row < means.rows(); ++row) {
-      const PatchRange& range = drawn_.patches[static_cast<std::size_t>(row)];
-      // The value of one patch keeps its bits.
-      means.row(row) = values.row(range.begin);
-      if (range.end - range.begin == 1) continue;
-      means.row(row) *= mesh_.area[range.begin];
-      double area = mesh_.area[range.begin];
-      for (PatchIndex patch = range.begin + 1; patch < range.end; ++patch) {
-        means.row(row) += mesh_.area[patch] * values.row(patch);
-        area += mesh_.area[patch];
-      }
-      means.row(row) /= area;
+Field row_means(const FieldView& values, const DrawnFaces& drawn, const PatchMesh& mesh) {
+  Field means(static_cast<Eigen::Index>(drawn.patches.size()), values.cols());
+  for (Eigen::Index row = 0; row < means.rows(); ++row) {
+    const PatchRange& range = drawn.patches[static_cast<std::size_t>(row)];
+    // The value of one patch keeps its bits.
+    means.row(row) = values.row(range.begin);
+    if (range.end - range.begin == 1) continue;
+    means.row(row) *= mesh.area[range.begin];
+    double area = mesh.area[range.begin];
+    for (PatchIndex patch = range.begin + 1; patch < range.end; ++patch) {
+      means.row(row) += mesh.area[patch] * values.row(patch);
+      area += mesh.area[patch];
     }
-    return means;
+    means.row(row) /= area;
   }
-
- private:
-  const DrawnFaces& drawn_;
-  const PatchMesh& mesh_;
-};
+  return means;
+}
 
 Json floats_part(const Field& values) {
   std::vector<float> numbers;
@@ -143,21 +126,23 @@ Field luminances(const Field& values, const Bands& bands) {
 }
 
 // Names are those of the arrays in .vtp where these are the same; of errors the luminance.
-Json values_part(const SolvedSurface& surface, const RowMeans& means) {
+Json values_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
   const Simulation& simulation = surface.simulation;
   const Solution& solution = simulation.solution;
   const Bands bands = bands_of(surface.scene);
   Json part = Json::object();
+  const auto is_known = [&](const Field& values) {
+    return values.rows() == static_cast<Eigen::Index>(simulation.mesh.size());
+  };
   const auto add = [&](const char* name, const Field& values) {
-    if (values.rows() == static_cast<Eigen::Index>(simulation.mesh.size())) part[name] = floats_part(means.of(values));
+    if (is_known(values)) part[name] = floats_part(row_means(values, drawn, simulation.mesh));
   };
   const auto add_luminous = [&](const char* name, const Field& values) {
-    if (values.rows() == static_cast<Eigen::Index>(simulation.mesh.size())) add(name, luminances(values, bands));
+    if (is_known(values)) add(name, luminances(values, bands));
   };
-  const auto add_scattered = [&](const char* name, const Field& irradiance) {
-    if (irradiance.rows() == static_cast<Eigen::Index>(simulation.mesh.size()))
-      add_luminous(name,
-                   reflected_error(simulation.problem.scattering, irradiance) / std::numbers::pi);  // dL = R dH / pi
+  const auto add_scattered = [&](const char* name, const Field& irradiance) {  // dL = R dH / pi
+    if (is_known(irradiance))
+      add_luminous(name, reflected_error(simulation.problem.scattering, irradiance) / std::numbers::pi);
   };
   add("radiance", solution.radiosity / std::numbers::pi);  // L = B / pi
   add("irradiance", solution.irradiance);
@@ -213,7 +198,6 @@ std::vector<std::uint8_t> sides_in_solids(const Scene& scene) {
 
 // At 1 the patches that no light gets to, nor comes from, as between walls.
 std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
-  constexpr double nothing = 1e-12;
   const PatchMesh& mesh = surface.simulation.mesh;
   const Solution& solution = surface.simulation.solution;
   const bool knows_irradiance = solution.irradiance.rows() == solution.radiosity.rows();
@@ -221,8 +205,8 @@ std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
     return !(surface.scene.materials[mesh.material[patch]].reflectance > 0).any();
   };
   std::vector<std::uint8_t> dark(mesh.size(), 0);
-  const double least = nothing * solution.radiosity.maxCoeff();
-  const double least_irradiance = knows_irradiance ? nothing * solution.irradiance.maxCoeff() : 0;
+  const double least = tolerance_of_arithmetic * solution.radiosity.maxCoeff();
+  const double least_irradiance = knows_irradiance ? tolerance_of_arithmetic * solution.irradiance.maxCoeff() : 0;
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
     if ((solution.radiosity.row(patch) > least).any()) continue;
     // A stored solution has radiances alone, and a black surface has none where light gets to it.
@@ -232,54 +216,56 @@ std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
   return dark;
 }
 
-// Per row: its patch or the first of them, how many they are, their area, and what they are made of. `layer` counts the
-// faces that lie over it, `filled` is 1 before a closed solid, and `dark` is 1 where there is no light.
+template <class Number, class ValueOf>
+Json per_row(const DrawnFaces& drawn, const ValueOf& value_of) {
+  std::vector<Number> values;
+  for (const PatchRange& range : drawn.patches) values.push_back(static_cast<Number>(value_of(range)));
+  return packed_array<Number>(values, 1);
+}
+
+// Per row: its patch or the first of them, how many they are, their area and material. `layer` counts the faces that
+// lie over it, `filled` is 1 before a closed solid, and `dark` is 1 where there is no light.
 Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
+  using Byte = std::uint8_t;
+  using Number = std::uint32_t;
   const PatchMesh& mesh = surface.simulation.mesh;
-  std::vector<std::uint32_t> first, count, face, material, group;
-  std::vector<std::uint8_t> side, enclosed, layer, dark, filled;
-  const std::vector<std::uint8_t> layers = layers_of(surface);
-  const std::vector<std::uint8_t> inner = sides_in_solids(surface.scene);
-  const std::vector<std::uint8_t> dark_patch = dark_patches(surface);
-  std::vector<float> areas;
   const Eigen::VectorXd& holds_light = surface.simulation.enclosed;
-  for (const PatchRange& range : drawn.patches) {
-    const Polygon& polygon = surface.scene.polygons[mesh.polygon[range.begin]];
-    double area = 0, area_enclosed = 0;
-    for (PatchIndex patch = range.begin; patch < range.end; ++patch) {
-      area += mesh.area[patch];
-      if (holds_light.size() > 0) area_enclosed += mesh.area[patch] * holds_light[patch];
-    }
-    enclosed.push_back(2 * area_enclosed > area ? 1 : 0);
-    first.push_back(range.begin);
-    count.push_back(range.end - range.begin);
-    areas.push_back(static_cast<float>(area));
-    face.push_back(polygon.face);
-    group.push_back(polygon.group);
-    material.push_back(mesh.material[range.begin]);
-    side.push_back(static_cast<std::uint8_t>(mesh.side[range.begin]));
-    const std::size_t slot = slot_of(mesh.polygon[range.begin], mesh.side[range.begin]);
-    layer.push_back(layers.empty() ? 0 : layers[slot]);
-    filled.push_back(inner[slot ^ 1U]);
-    const auto dark_from = dark_patch.begin() + range.begin, dark_to = dark_patch.begin() + range.end;
-    dark.push_back(std::find(dark_from, dark_to, 0) == dark_to ? 1 : 0);
-  }
-  Json part = {{"patch", packed_array<std::uint32_t>(first, 1)},
-               {"patches", packed_array<std::uint32_t>(count, 1)},
-               {"area", packed_array<float>(areas, 1)},
-               {"source_polygon", packed_array<std::uint32_t>(face, 1)},
-               {"group_id", packed_array<std::uint32_t>(group, 1)},
-               {"material_id", packed_array<std::uint32_t>(material, 1)},
-               {"side", packed_array<std::uint8_t>(side, 1)},
-               {"layer", packed_array<std::uint8_t>(layer, 1)},
-               {"filled", packed_array<std::uint8_t>(filled, 1)},
-               {"dark", packed_array<std::uint8_t>(dark, 1)}};
-  if (holds_light.size() > 0) part["enclosed"] = packed_array<std::uint8_t>(enclosed, 1);
+  const std::vector<Byte> layers = layers_of(surface), inner = sides_in_solids(surface.scene);
+  const std::vector<Byte> dark_patch = dark_patches(surface);
+  const auto polygon_of = [&](const PatchRange& range) -> const Polygon& {
+    return surface.scene.polygons[mesh.polygon[range.begin]];
+  };
+  const auto slot = [&](const PatchRange& range) { return slot_of(mesh.polygon[range.begin], mesh.side[range.begin]); };
+  const auto area_of = [&](const PatchRange& range, const auto& share_of) {
+    double area = 0;
+    for (PatchIndex patch = range.begin; patch < range.end; ++patch) area += mesh.area[patch] * share_of(patch);
+    return area;
+  };
+  const auto whole = [&](const PatchRange& range) { return area_of(range, [](PatchIndex) { return 1.0; }); };
+  const auto is_dark = [&](const PatchRange& range) {
+    return std::all_of(dark_patch.begin() + range.begin, dark_patch.begin() + range.end, [](Byte k) { return k != 0; });
+  };
+  Json part;
+  part["patch"] = per_row<Number>(drawn, [](const PatchRange& range) { return range.begin; });
+  part["patches"] = per_row<Number>(drawn, [](const PatchRange& range) { return range.end - range.begin; });
+  part["area"] = per_row<float>(drawn, whole);
+  part["source_polygon"] = per_row<Number>(drawn, [&](const PatchRange& range) { return polygon_of(range).face; });
+  part["group_id"] = per_row<Number>(drawn, [&](const PatchRange& range) { return polygon_of(range).group; });
+  part["material_id"] = per_row<Number>(drawn, [&](const PatchRange& range) { return mesh.material[range.begin]; });
+  part["side"] = per_row<Byte>(drawn, [&](const PatchRange& range) { return mesh.side[range.begin]; });
+  part["layer"] =
+      per_row<Byte>(drawn, [&](const PatchRange& range) { return layers.empty() ? 0 : layers[slot(range)]; });
+  part["filled"] = per_row<Byte>(drawn, [&](const PatchRange& range) { return inner[slot(range) ^ 1U]; });
+  part["dark"] = per_row<Byte>(drawn, is_dark);
+  if (holds_light.size() == 0) return part;
+  part["enclosed"] = per_row<Byte>(drawn, [&](const PatchRange& range) {
+    return 2 * area_of(range, [&](PatchIndex patch) { return holds_light[patch]; }) > whole(range);
+  });
   return part;
 }
 
-// How much of the display's value of what lies behind a material it takes away: display values are about the 2.2nd root
-// of radiances.
+// The share of the display's value behind a material that it takes away: display values are about the 2.2nd root of
+// radiances.
 double opacity_of(const Material& material, const Spectrum& shares) {
   if (material.transmittance.size() == 0) return 1;
   return 1 - std::pow(std::clamp((shares * material.transmittance).sum(), 0.0, 1.0), 1 / 2.2);
@@ -302,9 +288,9 @@ void add_materials(Json& part, const SolvedSurface& surface) {
   }
 }
 
-// The solved surface as the page draws it: faces, colours and values, packed, with the names that go with them.
-nlohmann::ordered_json model_part(const SolvedSurface& surface, double exposure,
-                                  std::size_t most_faces = most_drawn_faces) {
+// The solved surface as the page draws it: faces, colors and values, packed, with the names that go with them.
+Json model_part(const SolvedSurface& surface, double exposure) {
+  const std::size_t most_faces = 150'000;
   const DrawnFaces drawn = drawn_faces(surface, exposure, most_faces);
   const std::span<const std::uint32_t> corners(drawn.corners.empty() ? nullptr : drawn.corners.front().data(),
                                                4 * drawn.corners.size());
@@ -327,19 +313,16 @@ nlohmann::ordered_json model_part(const SolvedSurface& surface, double exposure,
   part["corners"] = packed_array<std::uint32_t>(corners, 4);
   part["row"] = packed_array<std::uint32_t>(drawn.row, 1);
   part["rows"] = rows_part(surface, drawn);
-  part["values"] = values_part(surface, RowMeans(drawn, surface.simulation.mesh));
+  part["values"] = values_part(surface, drawn);
   return part;
 }
-
-// So many faces of a problem are shown.
-constexpr std::size_t most_problem_faces = 200;
 
 Json diagnostics_part(const Diagnostics& diagnostics) {
   Json parts = json_of(diagnostics);
   for (std::size_t n = 0; n < diagnostics.size(); ++n) {
     const std::vector<ModelFace>& faces = diagnostics[n].faces;
     parts[n]["outlines"] = Json::array();
-    for (std::size_t k = 0; k < std::min(faces.size(), most_problem_faces); ++k) {
+    for (std::size_t k = 0; k < std::min<std::size_t>(faces.size(), 200); ++k) {
       Json outline = Json::array();
       for (const Point& corner : faces[k].corners) outline.push_back(json_array(corner));
       parts[n]["outlines"].push_back(std::move(outline));
@@ -397,18 +380,6 @@ Json data_of(const Page& page) {
   if (page.surface != nullptr) data["model"] = model_part(*page.surface, exposure_of(page));
   if (page.surface != nullptr) data["three"] = packed_text(page_scripts(), 1);
   return data;
-}
-
-// The text with other words in place of some letters.
-std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> words) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char letter : text) {
-    const auto* const found =
-        std::find_if(words.begin(), words.end(), [letter](const auto& word) { return word.first == letter; });
-    found == words.end() ? out.append(1, letter) : out.append(found->second);
-  }
-  return out;
 }
 
 // JSON in HTML: without "<" nothing in it can end the element that it stands in, or open another. Names from a model

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 #include "patchlight/report/report.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace patchlight {
@@ -14,7 +15,7 @@ namespace patchlight {
 struct Comparison;
 struct Study;
 
-/// What a page shows of a scene. Where there is no pointer, that part is left out.
+/// The parts of a page on a scene. A part without a pointer is left out.
 struct Page {
   const Scene& scene;
   Provenance provenance = {};
@@ -32,5 +33,12 @@ std::string page_of(const Page& page);
 /// Writes one page for browsers, which needs no other file and no network: the model to turn around, its values, tables
 /// and pictures. docs/reference/outputs/page.md describes it. \throws OutputError.
 void write_page(const std::filesystem::path& file, const Page& page);
+
+/// The page without its title and its data, which take the places of @TITLE@ and @DATA@. It is put together by
+/// cmake/page.cmake when the library is built.
+std::string_view page_template();
+
+/// three.js and its controls.
+std::string_view page_scripts();
 
 }  // namespace patchlight

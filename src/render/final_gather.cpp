@@ -1,31 +1,25 @@
 #include "render/final_gather.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/progress.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
-#include "render/gathered_light.h"
-#include "render/lens.h"
-#include "render/render.h"
+#include "base/streams.h"
+#include "render/tone_map.h"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
-// Tells an observer, which is copied, of a part of a stage as the fractions from one to another of it.
+// Reports a part of a stage to an observer, which is copied, as the fractions from one to another of the stage.
 Observer part_of_stage(const Observer& observer, double from, double to) {
   if (!observer) return {};
   return [observer, from, to](const Progress& progress) {
@@ -35,52 +29,16 @@ Observer part_of_stage(const Observer& observer, double from, double to) {
   };
 }
 
-// What is shown as dark as this share of the luminance of bright_share of the pixels may have that much's error.
-constexpr double dark = 0.05;
-constexpr double bright_share = 0.9;
-
+// A twentieth of the luminance that nine of ten lit pixels stay below: the errors of darker pixels are relative to it.
 double least_luminance(const std::vector<PixelSamples>& pixels) {
   std::vector<double> values;
   for (const PixelSamples& pixel : pixels) {
     if (pixel.mean() > 0) values.push_back(pixel.mean());
   }
-  if (values.empty()) return 0;
-  const auto bright =
-      values.begin() + static_cast<std::ptrdiff_t>(bright_share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), bright, values.end());
-  return dark * *bright;
+  return values.empty() ? 0 : 0.05 * quantile(std::move(values), 0.9);
 }
 
-}  // namespace
-
-void PixelSamples::extend(std::uint32_t count) {
-  assert(std::has_single_bit(count) && count >= room_);
-  for (; room_ < count; room_ *= 2) quarters_ = {quarters_[0] + quarters_[1], quarters_[2] + quarters_[3], 0, 0};
-}
-
-void PixelSamples::add(double luminance) {
-  assert(count_ < room_);
-  quarters_[count_ / (room_ / 4)] += luminance;
-  ++count_;
-}
-
-double PixelSamples::mean() const {
-  return (quarters_[0] + quarters_[1] + quarters_[2] + quarters_[3]) / std::max(1U, count_);
-}
-
-double PixelSamples::variance() const {
-  assert(count_ == room_);
-  const double size = room_ / 4.0;
-  double sum = 0;
-  for (const double quarter : quarters_) sum += std::pow(quarter / size - mean(), 2);
-  // Of the mean of a quarter sum / 3, of that of all a fourth of it
-  return sum / 12 * count_;
-}
-
-namespace {
-
-// What the error of each pixel is relative to: its mean, or a twentieth of what nine of ten pixels stay below; 0 where
-// no pixel is lit.
+// The luminance that the error of each pixel is relative to: its mean, or least_luminance(); 0 where no pixel is lit.
 Eigen::VectorXd reference_luminances(const std::vector<PixelSamples>& pixels) {
   const double least = least_luminance(pixels);
   Eigen::VectorXd references(static_cast<Eigen::Index>(pixels.size()));
@@ -89,57 +47,6 @@ Eigen::VectorXd reference_luminances(const std::vector<PixelSamples>& pixels) {
   return references;
 }
 
-}  // namespace
-
-Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int width) {
-  const int height = static_cast<int>(pixels.size()) / width;
-  const auto index = [&](int x, int y) { return static_cast<Eigen::Index>(y) * width + x; };
-  const Eigen::VectorXd references = reference_luminances(pixels);
-  Eigen::VectorXd own = Eigen::VectorXd::Zero(references.size());
-  for (Eigen::Index k = 0; k < own.size(); ++k) {
-    if (references[k] > 0) own[k] = pixels[static_cast<std::size_t>(k)].variance() / (references[k] * references[k]);
-  }
-  Eigen::VectorXd pooled(own.size());
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      double sum = 0;
-      int number = 0;
-      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u, ++number) sum += own[index(u, v)];
-      const Eigen::Index at = index(x, y);
-      pooled[at] = sum / number * references[at] * references[at] / pixels[static_cast<std::size_t>(at)].count();
-    }
-  }
-  return pooled;
-}
-
-double mean_relative_error(const std::vector<PixelSamples>& pixels, const Eigen::VectorXd& errors) {
-  const Eigen::VectorXd references = reference_luminances(pixels);
-  if (!(references.array() > 0).all()) return 0;
-  return std::sqrt((errors.array() / references.array()).square().mean());
-}
-
-std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixels, int width, double error,
-                                          std::uint32_t most) {
-  const Eigen::VectorXd variances = pooled_variances(pixels, width);
-  const Eigen::VectorXd references = reference_luminances(pixels);
-  std::vector<std::uint32_t> wanted;
-  for (std::size_t k = 0; k < pixels.size(); ++k) {
-    const double allowed = error * references[static_cast<Eigen::Index>(k)];
-    const double variance = variances[static_cast<Eigen::Index>(k)];
-    const std::uint32_t count = pixels[k].count();
-    const double times = variance > 0 ? variance / (allowed * allowed) : 0;
-    // In inverse proportion to their number
-    wanted.push_back(!(times > 1) || count >= most
-                         ? count
-                         : std::bit_ceil(static_cast<std::uint32_t>(std::min<double>(most, std::ceil(times * count)))));
-  }
-  return wanted;
-}
-
-namespace {
-
-// What a picture sees of a solved scene.
 struct PictureView {
   const SolvedLight& solved;
   const GatheredLight& gather;
@@ -147,21 +54,12 @@ struct PictureView {
   const Lens& lens;
 };
 
-// Of how many pixels the picture is, and how the records are gathered.
-struct RecordOptions {
-  int width = 0, height = 0;
-  HemisphereOptions hemisphere = {};
-  std::uint32_t seed = 1;
-};
-
-// Records are wanted at every so many pixels, first far from each other; where the weights around are less than enough.
+// Records are wanted at every so many pixels, first far from each other.
 constexpr int first_stride = 32;
 constexpr int last_stride = 2;
-constexpr double enough_weight = 0.35;
 
-// A record serves as many pixels around it, at least and at most.
+// A record serves at least so many pixels around it.
 constexpr double least_pixels = 3;
-constexpr double most_pixels = 64;
 
 struct Candidate {
   PatchPoint at;
@@ -190,7 +88,7 @@ std::vector<Candidate> not_served(std::vector<Candidate> candidates, const Solve
                                   const IrradianceCache& records) {
   std::erase_if(candidates, [&](const Candidate& one) {
     return (solved.reflectance.row(one.at.patch) == 0).all() ||
-           records.weight_at(one.at.point, solved.mesh.normal[one.at.patch]) >= enough_weight;
+           records.weight_at(one.at.point, solved.mesh.normal[one.at.patch]) >= 0.35;
   });
   return candidates;
 }
@@ -212,7 +110,7 @@ std::vector<Candidate> apart(const std::vector<Candidate>& all, const SolvedLigh
   return some;
 }
 
-std::vector<Candidate> candidates(const PictureView& view, const RecordOptions& options, int stride,
+std::vector<Candidate> candidates(const PictureView& view, const FinalGatherOptions& options, int stride,
                                   const IrradianceCache& records) {
   const int rows = (options.height - stride / 2 + stride - 1) / stride;
   std::vector<std::vector<Candidate>> found(static_cast<std::size_t>(std::max(0, rows)));
@@ -227,7 +125,7 @@ std::vector<Candidate> candidates(const PictureView& view, const RecordOptions& 
 
 // Records of the light from other patches where a picture sees patches that reflect: first far from each other, then
 // closer where those that are there serve too little. Same bits for any number of threads. Throws Cancelled.
-IrradianceCache gathered_records(const PictureView& view, const RecordOptions& options, const Observer& observer) {
+IrradianceCache gathered_records(const PictureView& view, const FinalGatherOptions& options, const Observer& observer) {
   IrradianceCache records(view.solved.luminous_weights);
   const int strides = std::countr_zero(static_cast<unsigned>(first_stride / last_stride)) + 1;
   for (int k = 0; k < strides; ++k) {
@@ -237,26 +135,13 @@ IrradianceCache gathered_records(const PictureView& view, const RecordOptions& o
     const double part = 1.0 / strides;
     parallel_for(wanted.size(), Stage::render, part_of_stage(observer, k * part, (k + 1) * part), [&](std::size_t n) {
       const Candidate& one = wanted[n];
-      gathered[n] =
-          view.gather.record_at(one.at, hash({options.seed, static_cast<std::uint64_t>(stride), n}),
-                                least_pixels * one.pixel_width, most_pixels * one.pixel_width, options.hemisphere);
+      gathered[n] = view.gather.record_at(one.at, hash({options.seed, static_cast<std::uint64_t>(stride), n}),
+                                          least_pixels * one.pixel_width, 64 * one.pixel_width, options.hemisphere);
     });
     records.add_graded(gathered);
   }
   return records;
 }
-
-constexpr int gather_tile_edge = 32;  // pixels
-constexpr std::uint32_t first_samples = 4;
-constexpr std::uint32_t next_samples = 16;   // at most, before the number of all is chosen
-constexpr std::uint32_t rays_to_lights = 4;  // of each sample
-
-// Points without a record take so many rays of their own.
-constexpr int rays_without_record = 64;
-
-struct PixelTile {
-  int left, top, right, bottom;
-};
 
 // A sample of a pixel.
 struct EyeSample {
@@ -270,7 +155,7 @@ struct EyeSamples {
   std::vector<std::size_t> of_rays;  // the sample of each; beyond the edge of a fisheye's picture there is no ray
 };
 
-// What each sample of a batch brings, and how far it may be off by the records.
+// The light that each sample of a batch brings, and how far it may be off by the records.
 struct Brought {
   Field radiance;
   Eigen::VectorXd deviation;
@@ -315,7 +200,7 @@ class FinalGather {
   IrradianceCache records_;
   std::vector<PixelTile> tiles_;
   std::vector<PixelSamples> pixels_;
-  Eigen::VectorXd deviations_;  // sums over samples of what records may be off
+  Eigen::VectorXd deviations_;  // sums over samples of the errors of records
   Image sums_;
 };
 
@@ -327,11 +212,8 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
       options_(options),
       gather_(solved),
       spheres_(spheres_of(solved.lights.lighting.luminaires)),
-      records_(solved.luminous_weights) {
-  for (int top = 0; top < options.height; top += gather_tile_edge)
-    for (int left = 0; left < options.width; left += gather_tile_edge)
-      tiles_.push_back({left, top, std::min(left + gather_tile_edge, options.width),
-                        std::min(top + gather_tile_edge, options.height)});
+      records_(solved.luminous_weights),
+      tiles_(tiles_of(options.width, options.height)) {
   const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;
   pixels_.resize(static_cast<std::size_t>(count));
   deviations_ = Eigen::VectorXd::Zero(count);
@@ -342,8 +224,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
 }
 
 void FinalGather::place_records(const Observer& observer) {
-  records_ = gathered_records({solved_, gather_, spheres_, lens_},
-                              {options_.width, options_.height, options_.hemisphere, options_.seed}, observer);
+  records_ = gathered_records({solved_, gather_, spheres_, lens_}, options_, observer);
 }
 
 EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& counts) const {
@@ -353,7 +234,7 @@ EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std
       const Eigen::Index pixel = index(x, y);
       const std::uint32_t end = counts[static_cast<std::size_t>(pixel)];
       for (std::uint32_t k = pixels_[static_cast<std::size_t>(pixel)].count(); k < end; ++k) {
-        const auto u = pixel_sample(k, hash({options_.seed, static_cast<std::uint64_t>(pixel), 1}));
+        const auto u = pixel_sample(k, hash({options_.seed, static_cast<std::uint64_t>(pixel), stream::pixel_places}));
         const auto ray = lens_.ray(x + 0.5 + tent(u[0]), y + 0.5 + tent(u[1]));
         samples.all.push_back({pixel, k});
         if (!ray) continue;
@@ -365,16 +246,17 @@ EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std
   return samples;
 }
 
-// The irradiance by other patches, from the records around or by rays of its own, whose scatter is that of samples.
+// The irradiance by other patches, from the records around or by 64 rays of its own, whose scatter is that of samples.
 CachedIrradiance FinalGather::gathered(const PatchPoint& at, const EyeSample& sample) const {
   if (const auto cached = records_.at(at.point, solved_.mesh.normal[at.patch])) return *cached;
   HemisphereOptions few = options_.hemisphere;
-  few.rays = rays_without_record;
-  const auto key = hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), sample.index, 2});
+  few.rays = 64;
+  const auto key =
+      hash({options_.seed, static_cast<std::uint64_t>(sample.pixel), sample.index, stream::gather_without_record});
   return {gather_.record_at(at, key, 1, 1, few).irradiance, 0};
 }
 
-// What samples see without the irradiance of points, and these: both of their sides where they are of sheets.
+// The light that samples see without the irradiance of points, and these points: on both sides of sheets.
 FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
   const auto count = static_cast<Eigen::Index>(samples.all.size());
   const Eigen::Index bands = solved_.exitance.cols();
@@ -411,21 +293,13 @@ FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
 // The irradiance of points by lights that shine on them.
 Field FinalGather::direct(const std::vector<SeenPoint>& seen, const EyeSamples& samples) const {
   std::vector<LitPoint> points;
-  std::map<PatchIndex, SkyAim> aims;
+  SkyAims aims;
   for (const auto& [sample, at, factor] : seen) {
-    const SkyAim* aim = nullptr;
-    if (solved_.lights.lighting.sky) {
-      auto place = aims.find(at.patch);
-      if (place == aims.end()) place = aims.emplace(at.patch, gather_.aim_at(at.patch)).first;
-      aim = &place->second;
-    }
     const auto& [pixel, index] = samples.all[sample];
-    points.push_back({{at.point, solved_.mesh.normal[at.patch], solved_.mesh.polygon[at.patch]},
-                      index,
-                      hash({options_.seed, static_cast<std::uint64_t>(pixel), 3}),
-                      aim});
+    const std::uint32_t seed = hash({options_.seed, static_cast<std::uint64_t>(pixel), stream::lights_of_pixel});
+    points.push_back(gather_.lit_point(at, index, seed, aims));
   }
-  return light_samples(solved_.lights, points, rays_to_lights);
+  return light_samples(solved_.lights, points, 4);
 }
 
 Brought FinalGather::brought(const EyeSamples& samples) const {
@@ -466,7 +340,7 @@ std::vector<std::uint32_t> FinalGather::wanted(std::uint32_t most) const {
   return wanted_samples(pixels_, options_.width, options_.error, limit);
 }
 
-// What the middle of each pixel shows.
+// The patch in the middle of each pixel.
 void FinalGather::see_layers() {
   parallel_for(tiles_.size(), [&](std::size_t t) {
     const PixelTile& tile = tiles_[t];
@@ -506,6 +380,66 @@ Image FinalGather::image() const {
 
 }  // namespace
 
+void PixelSamples::extend(std::uint32_t count) {
+  assert(std::has_single_bit(count) && count >= room_);
+  for (; room_ < count; room_ *= 2) quarters_ = {quarters_[0] + quarters_[1], quarters_[2] + quarters_[3], 0, 0};
+}
+
+void PixelSamples::add(double luminance) {
+  assert(count_ < room_);
+  quarters_[count_ / (room_ / 4)] += luminance;
+  ++count_;
+}
+
+double PixelSamples::mean() const {
+  return (quarters_[0] + quarters_[1] + quarters_[2] + quarters_[3]) / std::max(1U, count_);
+}
+
+double PixelSamples::variance() const {
+  assert(count_ == room_);
+  const double size = room_ / 4.0;
+  double sum = 0;
+  for (const double quarter : quarters_) sum += std::pow(quarter / size - mean(), 2);
+  // Of the mean of a quarter sum / 3, of that of all a fourth of it
+  return sum / 12 * count_;
+}
+
+Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int width) {
+  const Eigen::VectorXd references = reference_luminances(pixels);
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(references.size());
+  for (Eigen::Index k = 0; k < own.size(); ++k) {
+    if (references[k] > 0) own[k] = pixels[static_cast<std::size_t>(k)].variance() / (references[k] * references[k]);
+  }
+  Eigen::VectorXd pooled = box_means(own, width, 1);
+  for (Eigen::Index k = 0; k < own.size(); ++k)
+    pooled[k] = pooled[k] * references[k] * references[k] / pixels[static_cast<std::size_t>(k)].count();
+  return pooled;
+}
+
+double mean_relative_error(const std::vector<PixelSamples>& pixels, const Eigen::VectorXd& errors) {
+  const Eigen::VectorXd references = reference_luminances(pixels);
+  if (!(references.array() > 0).all()) return 0;
+  return std::sqrt((errors.array() / references.array()).square().mean());
+}
+
+std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixels, int width, double error,
+                                          std::uint32_t most) {
+  const Eigen::VectorXd variances = pooled_variances(pixels, width);
+  const Eigen::VectorXd references = reference_luminances(pixels);
+  std::vector<std::uint32_t> wanted;
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    const double allowed = error * references[static_cast<Eigen::Index>(k)];
+    const double variance = variances[static_cast<Eigen::Index>(k)];
+    const std::uint32_t count = pixels[k].count();
+    const double times = variance > 0 ? variance / (allowed * allowed) : 0;
+    // In inverse proportion to their number
+    wanted.push_back(!(times > 1) || count >= most
+                         ? count
+                         : std::bit_ceil(static_cast<std::uint32_t>(std::min<double>(most, std::ceil(times * count)))));
+  }
+  return wanted;
+}
+
 GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
                            const FinalGatherOptions& options, const Observer& observer) {
   FinalGather gather(solved, radiance, lens, options);
@@ -513,13 +447,13 @@ GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radianc
   gather.place_records(part_of_stage(observer, 0, 0.4));
   // 2. Some samples of all pixels
   const std::vector<std::uint32_t> first(
-      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), first_samples);
+      static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), 4);
   gather.take_samples(first, part_of_stage(observer, 0.4, 0.6));
   gather.see_layers();
-  // 3. More where they differ; twice, as few samples tell little of how many are wanted, and nothing of what more gain
+  // 3. More where they differ; in two steps, as few samples show little of how many are wanted
   bool unfinished = false;
   try {
-    gather.take_samples(gather.wanted(next_samples), part_of_stage(observer, 0.6, 0.75));
+    gather.take_samples(gather.wanted(16), part_of_stage(observer, 0.6, 0.75));
     gather.take_samples(gather.wanted(static_cast<std::uint32_t>(options.most_samples)),
                         part_of_stage(observer, 0.75, 1));
   } catch (const Cancelled&) {

@@ -3,8 +3,8 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/render/image.h"
 
+#include "render/camera.h"
 #include "render/gathered_light.h"
-#include "render/lens.h"
 #include "render/render.h"
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@
 
 namespace patchlight {
 
-/// The luminances of a pixel's samples, in order: sums over four quarters of them, so that the variance tells what the
-/// stratification of each quarter gains.
+/// The luminances of a pixel's samples, in order: sums over four quarters of them, so that the variance shows the gain
+/// by the stratification of each quarter.
 class PixelSamples {
  public:
   /// Makes room for `count` samples in all, a power of two from 4 up, of which those there are the first.
@@ -61,7 +61,7 @@ struct FinalGatherOptions {
   std::function<Spectrum(const Vector&)> surroundings = {};  ///< radiance where nothing is met; none: black
 };
 
-/// What was gathered by the time that the observer stopped.
+/// The picture, or as much of it as there was when the observer stopped.
 struct GatheredImage {
   Image image;
   bool unfinished = false;
@@ -70,11 +70,11 @@ struct GatheredImage {
 
 /// A picture of the light that points get, by two passes (Wallace, Cohen and Greenberg 1987): each point that the eye
 /// meets, straight, in mirrors and through clear faces, takes light of lamps, luminaires, sun and sky by shadow rays,
-/// and all other light from the solution, gathered at records between which it is interpolated (IrradianceCache). What
-/// mirrors and clear faces scatter themselves is `radiance`, that of the smoothed solution.
+/// and all other light from the solution, gathered at records between which it is interpolated (IrradianceCache). The
+/// light that mirrors and clear faces scatter themselves is `radiance`, that of the smoothed solution.
 ///
 /// Pixels take stratified samples under a tent filter: first 4 each, then as many as the wanted error asks for. Sets
-/// Image::error from how far pairs of samples differ, in a pixel and those around, and from what records differ. Same
+/// Image::error from how far pairs of samples differ, in a pixel and those around, and from how records differ. Same
 /// bits for any number of threads. \throws Cancelled as long as there is no picture.
 GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
                            const FinalGatherOptions& options = {}, const Observer& observer = {});

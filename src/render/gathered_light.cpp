@@ -1,10 +1,10 @@
 #include "render/gathered_light.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "light/texture.h"
 #include "lighting/mirrored_irradiance.h"
-#include "render/lens.h"
-#include "render/light_samples.h"
+#include "render/camera.h"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace patchlight {
@@ -71,7 +69,7 @@ HemisphereIrradiance Hemisphere::irradiance(const FieldView& radiosity, std::spa
       }
       const double width = (sine(j + 1) - sine(j)) / nearer(j, k, j, k - 1);
       by_sectors += width / std::numbers::pi * (row(j, k) - row(j, k - 1));
-      // Two neighbours differ by twice the variance within a cell, and by what the light changes from one to the other.
+      // Two neighbors differ by twice the variance within a cell, and by the change of the light between them.
       found.variance += (row(j, k) - row(j, k - 1)).square() / 2;
     }
     found.gradient += (outward * by_rings.matrix() + along * by_sectors.matrix()).array();
@@ -89,10 +87,8 @@ double Hemisphere::harmonic_mean(std::span<const double> distances) const {
 
 namespace {
 
-// Records serve at normals up to this angle from theirs, and up to this share of their radius before or behind their
-// plane: a table's top has nothing to tell of its lower side, nor of the floor.
-constexpr double widest_turn = 0.985;   // cosine of 10 degrees
-constexpr double widest_offset = 0.15;  // 10 degrees over the radius of curved surfaces
+// Records serve at normals up to 10 degrees from theirs: the cosine of that angle.
+constexpr double widest_turn = 0.985;
 
 // How fast radii may grow with the distance from a record.
 constexpr double growth_of_radius = 0.4;
@@ -124,7 +120,8 @@ double IrradianceCache::weight_of(const Reach& record, const Point& point, const
   if (!(square < record.radius * record.radius)) return 0;
   const double cosine = normal.dot(record.normal);
   if (!(cosine > widest_turn)) return 0;
-  if (std::abs(record.normal.dot(way)) > widest_offset * record.radius) return 0;
+  // A table's top does not serve on the floor: 10 degrees over the radius of curved surfaces.
+  if (std::abs(record.normal.dot(way)) > 0.15 * record.radius) return 0;
   const double turn = std::sqrt(std::max(0.0, 1 - cosine) / (1 - widest_turn));
   return 1 - std::max(std::sqrt(square) / record.radius, turn);
 }
@@ -221,7 +218,7 @@ std::optional<CachedIrradiance> IrradianceCache::at(const Point& point, const Ve
     second += weight * value * value;
   });
   if (weights == 0) return std::nullopt;
-  // By what records differ, with as many degrees of freedom as records of equal weight would have.
+  // By the scatter of the records, with as many degrees of freedom as records of equal weight would have.
   const double mean = first / weights;
   const double scatter = std::max(0.0, second / weights - mean * mean);
   const double freedom = std::max(0.5, weights * weights / squares - 1);
@@ -230,19 +227,6 @@ std::optional<CachedIrradiance> IrradianceCache::at(const Point& point, const Ve
   found.deviation = std::sqrt(variance);
   return found;
 }
-
-namespace {
-
-// A record serves up to this share of the harmonic mean distance of what is around it.
-constexpr double share_of_distance = 0.25;
-
-// Of light that mirrors and clear faces send to a record; at points there are 16 times as many.
-constexpr int samples_of_mirrored = 2;
-
-// From a place that a ray has met so many rays look for lights.
-constexpr std::uint32_t rays_of_bounce = 2;
-
-}  // namespace
 
 Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point) {
   if (!light.scene) return light.reflectance.row(patch);
@@ -274,7 +258,6 @@ struct GatheredLight::Stop {
 GatheredLight::GatheredLight(const SolvedLight& solved) : solved_(solved), lookup_(solved.mesh) {}
 
 SkyAim GatheredLight::aim_at(PatchIndex patch) const {
-  if (!solved_.lights.lighting.sky) return {};
   const PatchMesh& mesh = solved_.mesh;
   const PatchCorners corners = mesh.corner_points(patch);
   const Receiver receiver{
@@ -284,6 +267,16 @@ SkyAim GatheredLight::aim_at(PatchIndex patch) const {
       mesh.side[patch],
       {corners.points.begin(), corners.points.begin() + corners.count}};
   return aim_at_few(sky_aim(solved_.lights.lighting, receiver, AimFor::points), solved_.lights.lighting.openings);
+}
+
+LitPoint GatheredLight::lit_point(const PatchPoint& at, std::uint32_t sample, std::uint32_t seed, SkyAims& aims) const {
+  const SkyAim* aim = nullptr;
+  if (solved_.lights.lighting.sky) {
+    const auto [place, is_new] = aims.try_emplace(at.patch);
+    if (is_new) place->second = aim_at(at.patch);
+    aim = &place->second;
+  }
+  return {{at.point, solved_.mesh.normal[at.patch], solved_.mesh.polygon[at.patch]}, sample, seed, aim};
 }
 
 std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const {
@@ -313,9 +306,8 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
     const Stop& stop = stops[k];
     if (!stop.patch) continue;
     const PatchIndex patch = *stop.patch;
-    const bool is_sheet = !solved_.other_side.empty() && solved_.other_side[patch] != patch;
     const bool is_near = stop.distance * stop.distance < mesh.area[patch];
-    const bool goes_on = is_near && bounces_left > 0 && !stop.is_specular && !is_sheet &&
+    const bool goes_on = is_near && bounces_left > 0 && !stop.is_specular && !behind(solved_, patch) &&
                          !solved_.lights.lighting.mirrors && (solved_.exitance.row(patch) == 0).all();
     if (goes_on)
       near.push_back(k);
@@ -327,23 +319,18 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
   // From the nearer ones a ray goes on, and others look for lights: rho (H_direct + H_gathered).
   std::vector<Ray> rays;
   std::vector<LitPoint> points;
-  std::map<PatchIndex, SkyAim> aims;
+  SkyAims aims;
   for (std::size_t n = 0; n < near.size(); ++n) {
     const Stop& stop = stops[near[n]];
     const PatchIndex patch = *stop.patch;
-    const auto u = pixel_sample(static_cast<std::uint32_t>(n), hash({seed, 3}));
+    const auto sample = static_cast<std::uint32_t>(n);
+    const auto u = pixel_sample(sample, hash({seed, stream::bounce_directions}));
     rays.push_back({stop.point, cosine_direction(mesh.normal[patch], u[0], u[1]), mesh.polygon[patch]});
-    const SkyAim* aim = nullptr;
-    if (solved_.lights.lighting.sky) {
-      auto place = aims.find(patch);
-      if (place == aims.end()) place = aims.emplace(patch, aim_at(patch)).first;
-      aim = &place->second;
-    }
-    points.push_back(
-        {{stop.point, mesh.normal[patch], mesh.polygon[patch]}, static_cast<std::uint32_t>(n), hash({seed, 4}), aim});
+    points.push_back(lit_point({stop.point, patch}, sample, hash({seed, stream::lights_of_bounce}), aims));
   }
-  const Field direct = light_samples(solved_.lights, points, rays_of_bounce);
-  const Field onward = arriving(stops_of(rays, hash({seed, 5})), bounces_left - 1, hash({seed, 6}));
+  const Field direct = light_samples(solved_.lights, points, 2);
+  const Field onward = arriving(stops_of(rays, hash({seed, stream::panes_of_bounce})), bounces_left - 1,
+                                hash({seed, stream::next_bounce}));
   for (std::size_t n = 0; n < near.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
     found.row(static_cast<Eigen::Index>(near[n])) =
@@ -361,7 +348,7 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   std::vector<Ray> rays;
   for (const Vector& direction : hemisphere.directions(seed))
     rays.push_back({at.point, direction, mesh.polygon[at.patch]});
-  const std::vector<Stop> stops = stops_of(rays, hash({seed, 1}));
+  const std::vector<Stop> stops = stops_of(rays, hash({seed, stream::panes_of_gather}));
   std::vector<double> distances;
   for (const Stop& stop : stops) distances.push_back(stop.distance);
   const HemisphereIrradiance found = hemisphere.irradiance(arriving(stops, options.most_bounces, seed), distances);
@@ -370,9 +357,8 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   Spectrum variance = found.variance;
   if (solved_.lights.lighting.mirrors) {
     const SurfacePoint point{at.point, normal, mesh.polygon[at.patch]};
-    const DirectIrradiance mirrored =
-        mirrored_irradiance(solved_.lights.lighting, solved_.lights.lamps, std::span(&point, 1),
-                            {.mirrored_samples = samples_of_mirrored, .seed = seed});
+    const DirectIrradiance mirrored = mirrored_irradiance(solved_.lights.lighting, solved_.lights.lamps,
+                                                          std::span(&point, 1), {.mirrored_samples = 2, .seed = seed});
     record.irradiance += mirrored.irradiance.row(0);
     variance += mirrored.standard_error.row(0).square();
   }
@@ -380,7 +366,7 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   record.uncertainty = std::sqrt((variance.matrix() * weights.cwiseAbs2()).value());
   const double value = (record.irradiance.matrix() * weights).value();
   const double slope = (record.gradient.matrix() * weights).norm();
-  const double wanted = std::min(share_of_distance * hemisphere.harmonic_mean(distances),
+  const double wanted = std::min(0.25 * hemisphere.harmonic_mean(distances),
                                  slope > 0 ? value / slope : std::numeric_limits<double>::infinity());
   record.radius = std::clamp(wanted, least, most);
   // A record that has to serve farther than its slope is good for has none.

@@ -10,6 +10,7 @@
 #include "visibility/occluder.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -21,7 +22,7 @@ namespace patchlight {
 struct HemisphereIrradiance {
   Spectrum irradiance;  ///< W/m^2
   Spectrum variance;    ///< of it
-  Field gradient;       ///< per metre the point is moved along x, y and z (rows), W/m^3 per band
+  Field gradient;       ///< per meter the point is moved along x, y and z (rows), W/m^3 per band
 };
 
 /// Directions over a hemisphere, distributed as the cosine: one in each of M rings by N sectors of equal weight.
@@ -33,12 +34,12 @@ class Hemisphere {
   /// Ring by ring; random in their cells.
   std::vector<Vector> directions(std::uint32_t seed) const;
 
-  /// The irradiance by the radiosity that each of these finds, W/m^2, and how far away, metres: its mean, as directions
-  /// are distributed as cos / pi. Its gradient by what moves in and out of each cell when the point moves: Ward and
-  /// Heckbert 1992, Irradiance Gradients, the translational one. Its variance by what neighbours in a ring differ.
+  /// The irradiance by the radiosity that each of these finds, W/m^2, and how far away, meters: its mean, as directions
+  /// are distributed as cos / pi. Its translational gradient: Ward and Heckbert 1992, Irradiance Gradients. Its
+  /// variance by the differences of neighbors in a ring.
   HemisphereIrradiance irradiance(const FieldView& radiosity, std::span<const double> distances) const;
 
-  /// Of so many distances, metres; infinite when all are.
+  /// Of so many distances, meters; infinite when all are.
   double harmonic_mean(std::span<const double> distances) const;
 
  private:
@@ -53,16 +54,16 @@ class Hemisphere {
 struct IrradianceRecord {
   Point point;
   Vector normal;           ///< unit
-  double radius = 0;       ///< metres, how far it may serve
+  double radius = 0;       ///< meters, how far it may serve
   Spectrum irradiance;     ///< W/m^2
-  Field gradient;          ///< per metre along x, y and z (rows) and band (columns)
+  Field gradient;          ///< per meter along x, y and z (rows) and band (columns)
   double uncertainty = 0;  ///< standard error of its luminance by sampling, as cd/m^2 is weighted
 };
 
 /// An irradiance from the records around.
 struct CachedIrradiance {
   Spectrum irradiance;   ///< W/m^2
-  double deviation = 0;  ///< standard error, by what the records say of their own and differ, weighted as luminance is
+  double deviation = 0;  ///< standard error, by those of the records and their differences, weighted as luminance is
 };
 
 /// Irradiances at points from which others around are interpolated: Ward, Rubinstein and Clear 1988, with gradients
@@ -74,8 +75,8 @@ class IrradianceCache {
 
   void add(const IrradianceRecord& record);
 
-  /// Several, after which no radius is larger than that of a record which it reaches and a share of the distance to it:
-  /// what one finds near an edge others do not cover up (Krivanek and others 2006, neighbour clamping).
+  /// Several, after which no radius is larger than that of a record which it reaches and a share of the distance to it
+  /// (Krivanek and others 2006, neighbor clamping).
   void add_graded(const std::vector<IrradianceRecord>& records);
 
   std::size_t size() const { return reaches_.size(); }
@@ -87,7 +88,7 @@ class IrradianceCache {
   std::optional<CachedIrradiance> at(const Point& point, const Vector& normal) const;
 
  private:
-  /// What decides whether a record serves at a place.
+  /// The part of a record that decides whether it serves at a place.
   struct Reach {
     Point point;
     Vector normal;
@@ -95,7 +96,7 @@ class IrradianceCache {
     double uncertainty = 0;
   };
   struct Level {
-    int log2_of_edge = 0;  // metres
+    int log2_of_edge = 0;  // meters
     double cells_per_metre = 1;
   };
   struct Weighted {
@@ -116,7 +117,7 @@ class IrradianceCache {
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 
-/// What a final gather knows of a solved scene. Fields have a row per patch and a column per band.
+/// A solved scene for a final gather. Fields have a row per patch and a column per band.
 struct SolvedLight {
   const PatchMesh& mesh;
   const Occluder& occluder;  ///< of all faces
@@ -133,7 +134,7 @@ struct SolvedLight {
 /// The reflectance at a point of a patch: that of the texel where a picture is on it, else the patch's.
 Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point);
 
-/// False where only the solution knows what is scattered: at clear faces and mirrors.
+/// False where only the solution has the scattered light: at clear faces and mirrors.
 bool is_plain(const SolvedLight& light, PatchIndex patch);
 
 /// The patch on the other side of a sheet.
@@ -145,6 +146,9 @@ struct PatchPoint {
   PatchIndex patch = 0;
 };
 
+/// Per patch its rays to the sky.
+using SkyAims = std::map<PatchIndex, SkyAim>;
+
 /// How the light from other patches is gathered at a point.
 struct HemisphereOptions {
   int rays = 1024;
@@ -152,8 +156,7 @@ struct HemisphereOptions {
   std::uint32_t seed = 1;
 };
 
-/// What patches reflect to points: the irradiance by light that has been reflected at least once, and none that comes
-/// straight from lights.
+/// The irradiance of points by light that patches have reflected at least once.
 class GatheredLight {
  public:
   /// Keeps a reference, which must outlive it.
@@ -162,18 +165,20 @@ class GatheredLight {
   /// The record of a point, by rays distributed as the cosine over its hemisphere, stratified, into the solution. Where
   /// a ray meets a patch that is wider than the ray is long, it goes on from there by the same rule, with light
   /// straight from lights. Its radius is a share of the harmonic mean of the rays' lengths, and of the length over
-  /// which the irradiance changes by itself, and from `least` to `most` metres. Follows from the seed and the point's
+  /// which the irradiance changes by itself, and from `least` to `most` meters. Follows from the seed and the point's
   /// `key` alone.
   IrradianceRecord record_at(const PatchPoint& at, std::uint64_t key, double least, double most,
                              const HemisphereOptions& options) const;
 
   const PatchLookup& lookup() const { return lookup_; }
 
-  /// Which rays to the sky a place of a patch gets; without any there is no sky.
-  SkyAim aim_at(PatchIndex patch) const;
+  /// A point of a patch for light_samples(). It refers to an aim that is kept in `aims`.
+  LitPoint lit_point(const PatchPoint& at, std::uint32_t sample, std::uint32_t seed, SkyAims& aims) const;
 
  private:
   struct Stop;
+  /// The rays to the sky that a place of a patch gets.
+  SkyAim aim_at(PatchIndex patch) const;
   std::vector<Stop> stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const;
   Field arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const;
 

@@ -1,66 +1,23 @@
 #include "render/light_samples.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "form_factor/point_polygon.h"
 #include "lighting/sky.h"
-#include "render/lens.h"
+#include "render/camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
 // The part of `vector` at right angles to a unit `axis`, of length 1.
 Vector across(const Vector& vector, const Vector& axis) { return (vector - vector.dot(axis) * axis).normalized(); }
-
-}  // namespace
-
-SphericalTriangle::SphericalTriangle(const Point& from, const std::array<Point, 3>& corners)
-    : a_((corners[0] - from).normalized()), b_((corners[1] - from).normalized()), c_((corners[2] - from).normalized()) {
-  if (a_.dot(b_.cross(c_)) < 0) std::swap(b_, c_);
-  ab_ = a_.cross(b_);
-  bc_ = b_.cross(c_);
-  ca_ = c_.cross(a_);
-  // tan(omega / 2) = a . (b x c) / (1 + a.b + b.c + c.a): Van Oosterom and Strackee 1983, eq. 8
-  solid_angle_ = std::max(0.0, 2 * std::atan2(a_.dot(bc_), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_)));
-}
-
-Vector SphericalTriangle::direction(double u, double v) const {
-  // The angle at a
-  const Vector to_b = across(b_, a_), to_c = across(c_, a_);
-  const double cosine = std::clamp(to_b.dot(to_c), -1.0, 1.0), sine = to_b.cross(to_c).norm();
-  const double alpha = std::atan2(sine, cosine);
-  // The part of the triangle on b's side of the great circle through b and c' has u of its area.
-  const double phi = u * solid_angle_ - alpha;
-  const double s = std::sin(phi), t = std::cos(phi);
-  const double p = t - cosine;
-  const double q = s + sine * a_.dot(b_);
-  const double below = (q * s + p * t) * sine;
-  const double along = below == 0 ? 1 : std::clamp(((q * t - p * s) * cosine - q) / below, -1.0, 1.0);
-  const Vector c = along * a_ + std::sqrt(1 - along * along) * to_c;
-  const double z = 1 - v * (1 - c.dot(b_));
-  const Vector side = c - c.dot(b_) * b_;
-  if (!(side.norm() > 0)) return b_;
-  return (z * b_ + std::sqrt(std::max(0.0, 1 - z * z)) * side.normalized()).normalized();
-}
-
-bool SphericalTriangle::contains(const Vector& direction) const {
-  return direction.dot(ab_) >= 0 && direction.dot(bc_) >= 0 && direction.dot(ca_) >= 0;
-}
-
-double SphericalTriangle::mean_cosine(const Vector& normal) const {
-  return (std::max(0.0, normal.dot(a_)) + std::max(0.0, normal.dot(b_)) + std::max(0.0, normal.dot(c_))) / 3;
-}
-
-namespace {
 
 // So many lamps or luminaires get rays each; of more, some are chosen for each point.
 constexpr std::size_t few_lights = 4;
@@ -71,10 +28,7 @@ constexpr std::uint32_t rays_of_lamp = 2;
 // Rays to a lamp are in two halves, by turns, whose random numbers have nothing to do with each other.
 constexpr std::uint32_t halves = 2;
 
-// Seeds of what one point asks for.
-enum Purpose : std::uint32_t { choice_of_lamp = 11, place_on_lamp, choice_of_luminaire, place_on_luminaire };
-
-// A ray to a place on a light. What arrives is a constant plus `light` times the share that gets through.
+// A ray to a place on a light. `light` times the share that gets through arrives.
 struct LightRay {
   std::size_t point = 0;
   Segment segment;
@@ -116,7 +70,7 @@ double kernel(const LampFace& lamp, const SurfacePoint& at, const Point& place) 
 
 std::size_t corner_count(const LampFace& lamp) { return lamp.corners[2] == lamp.corners[3] ? 3 : 4; }
 
-// Nearly what a lamp may give, mean of the bands: above 0 wherever it is before the point and the point before it.
+// About the light that a lamp may give, mean of the bands: above 0 wherever each of lamp and point is before the other.
 double possible_light(const LampFace& lamp, const SurfacePoint& at) {
   double rise = 0;
   for (const Point& corner : lamp.corners) rise = std::max(rise, at.normal.dot(corner - at.point));
@@ -141,8 +95,9 @@ std::vector<Choice> choices(const std::vector<double>& weights, double sum, std:
   return chosen;
 }
 
-std::array<double, 4> sample_of(const LitPoint& point, Purpose purpose, std::uint32_t ray, std::uint32_t rays) {
-  return pixel_sample(point.sample * rays + ray, hash({point.seed, purpose}));
+// The number that chooses among the lights of a point.
+double offset_of(const LitPoint& point, stream::Stream purpose) {
+  return pixel_sample_2d(point.sample, hash({point.seed, purpose}))[0];
 }
 
 // So many rays to a lamp, which counts `factor` times.
@@ -166,7 +121,7 @@ void add_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint
     const auto each = std::max(rays_of_lamp, rays / static_cast<std::uint32_t>(lights.lamps.size()));
     for (std::size_t l = 0; l < lights.lamps.size(); ++l) {
       if (possible_light(lights.lamps[l], point.at) > 0)
-        add_lamp(to, lights.lamps[l], index, point, {each, 1, hash({point.seed, place_on_lamp, l})});
+        add_lamp(to, lights.lamps[l], index, point, {each, 1, hash({point.seed, stream::place_on_lamp, l})});
     }
     return;
   }
@@ -178,11 +133,11 @@ void add_lamps(Rays& to, const Lights& lights, std::size_t index, const LitPoint
   }
   if (!(sum > 0)) return;
   const std::uint32_t count = std::max<std::uint32_t>(1, rays / rays_of_lamp);
-  const std::vector<Choice> chosen = choices(weights, sum, count, sample_of(point, choice_of_lamp, 0, 1)[0]);
+  const std::vector<Choice> chosen = choices(weights, sum, count, offset_of(point, stream::choice_of_lamp));
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::size_t l = chosen[k].index;
     add_lamp(to, lights.lamps[l], index, point,
-             {rays_of_lamp, sum / (weights[l] * count), hash({point.seed, place_on_lamp, l, k})});
+             {rays_of_lamp, sum / (weights[l] * count), hash({point.seed, stream::place_on_lamp, l, k})});
   }
 }
 
@@ -198,7 +153,7 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
   std::vector<double> weights;
   double sum = 0;
   for (std::size_t l = 0; l < luminaires.size(); ++l) {
-    const auto u = pixel_sample(point.sample, hash({point.seed, place_on_luminaire, l}));
+    const auto u = pixel_sample_2d(point.sample, hash({point.seed, stream::place_on_luminaire, l}));
     arrivals.push_back(from_luminaire(luminaires[l], lights.lighting.up, point.at, {u[0], u[1]}));
     const Arrival& arrival = arrivals.back();
     weights.push_back(arrival.irradiance > 0 ? arrival.irradiance * arrival.colour->mean() : 0);
@@ -209,7 +164,7 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
     for (const Arrival& arrival : arrivals) add_arrival(to, index, point.at, arrival, 1);
     return;
   }
-  const double offset = sample_of(point, choice_of_luminaire, 0, 1)[0];
+  const double offset = offset_of(point, stream::choice_of_luminaire);
   for (const Choice& chosen : choices(weights, sum, rays, offset))
     add_arrival(to, index, point.at, arrivals[chosen.index], sum / (weights[chosen.index] * rays));
 }
@@ -240,53 +195,13 @@ double lamp_irradiance(const LampRays& rays, const Field& through, std::span<con
   return rays.factor * rays.lamp->exitance[band] * sum / static_cast<double>(n);
 }
 
-}  // namespace
-
-Field light_samples(const Lights& lights, std::span<const LitPoint> points, std::uint32_t rays) {
-  const Lighting& lighting = lights.lighting;
-  Rays all;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const LitPoint& point = points[k];
-    if (!lights.lamps.empty()) add_lamps(all, lights, k, point, rays);
-    if (!lighting.luminaires.empty()) add_luminaires(all, lights, k, point, rays);
-    if (lighting.sun) add_arrival(all, k, point.at, from_sun(lighting, point.at), 1);
-  }
-  Field irradiance = Field::Zero(static_cast<Eigen::Index>(points.size()), lighting.bands);
-  const auto row = [&](std::size_t k) { return irradiance.row(static_cast<Eigen::Index>(k)); };
-
-  const std::size_t to_lamps = all.to_lamps.size();
-  std::vector<Segment> segments = std::move(all.to_lamps);
-  for (const LightRay& ray : all.single) segments.push_back(ray.segment);
-  const Field through = lighting.paths.transmittance(segments);
-  for (const LampRays& lamp : all.lamps) {
-    for (Eigen::Index band = 0; band < lighting.bands; ++band)
-      irradiance(static_cast<Eigen::Index>(lamp.point), band) += lamp_irradiance(lamp, through, all.kernels, band);
-  }
-  for (std::size_t k = 0; k < all.single.size(); ++k)
-    row(all.single[k].point) += all.single[k].light * through.row(static_cast<Eigen::Index>(to_lamps + k));
-
-  if (lighting.sky) irradiance += sky_samples(lighting, points, rays);
-  return irradiance;
-}
-
-namespace {
-
-// Each point looks at so many triangles, to know how much of its hemisphere they fill.
-constexpr std::size_t most_triangles = 32;
-
-// What is seen as smaller than this, sr, is left to rays over the hemisphere.
-constexpr double least_solid_angle = 1e-8;
-
-// Seeds of the two kinds of rays of a point.
-enum SkyPurpose : std::uint32_t { to_openings = 21, over_hemisphere };
-
 // A triangle of an opening as a point sees it, and how probable it is for a ray.
 struct Target {
   SphericalTriangle triangle;
   double probability = 0;
 };
 
-// A ray to the sky. What arrives is `factor` times the radiance there and the share that gets through.
+// A ray to the sky. `factor` times the radiance there and the share that gets through arrives.
 struct SkyRay {
   std::size_t point = 0;
   Vector direction;
@@ -294,7 +209,9 @@ struct SkyRay {
   bool is_aimed = false;
 };
 
-// The rays of all points, and where they aim.
+// The rays of all points that have an aim, and where they aim: all but one of `rays` to openings, where its aim has
+// any, and others over the hemisphere for light from elsewhere. Estimates the irradiance of each point by sky and
+// ground.
 class SkySampler {
  public:
   SkySampler(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays)
@@ -333,7 +250,7 @@ void SkySampler::add_targets(std::size_t index) {
     for (const std::array<Point, 3>& corners : lighting_.openings[k].triangles) {
       const SphericalTriangle triangle(at.point, corners);
       const double weight = triangle.solid_angle() * triangle.mean_cosine(at.normal);
-      if (!(weight > least_solid_angle)) continue;
+      if (!(weight > 1e-8)) continue;  // sr; rays over the hemisphere find smaller ones
       targets_.push_back({triangle, weight});
       sum += weight;
     }
@@ -363,7 +280,7 @@ void SkySampler::add_ray(std::size_t index, const Vector& direction, std::uint32
   const SurfacePoint& at = points_[index].at;
   const double cosine = at.normal.dot(direction);
   if (!(cosine > 0)) return;
-  // L cos over the density, which those to openings take once what they meet is known
+  // L cos over the density; that of rays to openings comes in when it is known where they end
   rays_.push_back({index, direction, (is_aimed ? cosine : std::numbers::pi) / of_so_many, is_aimed});
   segments_.push_back({at.point, lighting_.paths.beyond(at.point, direction), at.polygon, no_polygon});
 }
@@ -373,12 +290,12 @@ void SkySampler::add(std::size_t index) {
   if (!point.aim->probabilities.empty()) add_targets(index);
   const std::uint32_t aimed = targets_.size() == begin_[index] ? 0 : std::max(1U, count_ - 1);
   for (std::uint32_t k = 0; k < aimed; ++k) {
-    auto u = pixel_sample(point.sample * aimed + k, hash({point.seed, to_openings}));
+    auto u = pixel_sample_2d(point.sample * aimed + k, hash({point.seed, stream::sky_openings}));
     add_ray(index, chosen(index, u[0]).triangle.direction(u[0], u[1]), aimed, true);
   }
   const std::uint32_t others = std::max(1U, count_ - aimed);
   for (std::uint32_t k = 0; k < others; ++k) {
-    const auto u = pixel_sample(point.sample * others + k, hash({point.seed, over_hemisphere}));
+    const auto u = pixel_sample_2d(point.sample * others + k, hash({point.seed, stream::sky_hemisphere}));
     add_ray(index, cosine_direction(point.at.normal, u[0], u[1]), others, false);
   }
 }
@@ -390,8 +307,8 @@ Field SkySampler::irradiance() const {
     const auto row = static_cast<Eigen::Index>(k);
     if (!(through.row(row) > 0).any()) continue;
     const SkyRay& ray = rays_[k];
-    // What gets in through openings is the business of the rays that go there, all else that of the others: where all
-    // light comes through openings, those over the hemisphere add no noise.
+    // Rays to openings estimate the light through these, and the others all other light: where all light comes through
+    // openings, those over the hemisphere add no noise.
     const double aimed = density(ray.point, ray.direction);
     if (ray.is_aimed != (aimed > 0)) continue;
     const double factor = ray.is_aimed ? ray.factor / aimed : ray.factor;
@@ -403,6 +320,70 @@ Field SkySampler::irradiance() const {
 
 }  // namespace
 
+SphericalTriangle::SphericalTriangle(const Point& from, const std::array<Point, 3>& corners)
+    : a_((corners[0] - from).normalized()), b_((corners[1] - from).normalized()), c_((corners[2] - from).normalized()) {
+  if (a_.dot(b_.cross(c_)) < 0) std::swap(b_, c_);
+  ab_ = a_.cross(b_);
+  bc_ = b_.cross(c_);
+  ca_ = c_.cross(a_);
+  // tan(omega / 2) = a . (b x c) / (1 + a.b + b.c + c.a): Van Oosterom and Strackee 1983, eq. 8
+  solid_angle_ = std::max(0.0, 2 * std::atan2(a_.dot(bc_), 1 + a_.dot(b_) + b_.dot(c_) + c_.dot(a_)));
+}
+
+Vector SphericalTriangle::direction(double u, double v) const {
+  // The angle at a
+  const Vector to_b = across(b_, a_), to_c = across(c_, a_);
+  const double cosine = std::clamp(to_b.dot(to_c), -1.0, 1.0), sine = to_b.cross(to_c).norm();
+  const double alpha = std::atan2(sine, cosine);
+  // The part of the triangle on b's side of the great circle through b and c' has u of its area.
+  const double phi = u * solid_angle_ - alpha;
+  const double s = std::sin(phi), t = std::cos(phi);
+  const double p = t - cosine;
+  const double q = s + sine * a_.dot(b_);
+  const double below = (q * s + p * t) * sine;
+  const double along = below == 0 ? 1 : std::clamp(((q * t - p * s) * cosine - q) / below, -1.0, 1.0);
+  const Vector c = along * a_ + std::sqrt(1 - along * along) * to_c;
+  const double z = 1 - v * (1 - c.dot(b_));
+  const Vector side = c - c.dot(b_) * b_;
+  if (!(side.norm() > 0)) return b_;
+  return (z * b_ + std::sqrt(std::max(0.0, 1 - z * z)) * side.normalized()).normalized();
+}
+
+bool SphericalTriangle::contains(const Vector& direction) const {
+  return direction.dot(ab_) >= 0 && direction.dot(bc_) >= 0 && direction.dot(ca_) >= 0;
+}
+
+double SphericalTriangle::mean_cosine(const Vector& normal) const {
+  return (std::max(0.0, normal.dot(a_)) + std::max(0.0, normal.dot(b_)) + std::max(0.0, normal.dot(c_))) / 3;
+}
+
+Field light_samples(const Lights& lights, std::span<const LitPoint> points, std::uint32_t rays) {
+  const Lighting& lighting = lights.lighting;
+  Rays all;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const LitPoint& point = points[k];
+    if (!lights.lamps.empty()) add_lamps(all, lights, k, point, rays);
+    if (!lighting.luminaires.empty()) add_luminaires(all, lights, k, point, rays);
+    if (lighting.sun) add_arrival(all, k, point.at, from_sun(lighting, point.at), 1);
+  }
+  Field irradiance = Field::Zero(static_cast<Eigen::Index>(points.size()), lighting.bands);
+  const auto row = [&](std::size_t k) { return irradiance.row(static_cast<Eigen::Index>(k)); };
+
+  const std::size_t to_lamps = all.to_lamps.size();
+  std::vector<Segment> segments = std::move(all.to_lamps);
+  for (const LightRay& ray : all.single) segments.push_back(ray.segment);
+  const Field through = lighting.paths.transmittance(segments);
+  for (const LampRays& lamp : all.lamps) {
+    for (Eigen::Index band = 0; band < lighting.bands; ++band)
+      irradiance(static_cast<Eigen::Index>(lamp.point), band) += lamp_irradiance(lamp, through, all.kernels, band);
+  }
+  for (std::size_t k = 0; k < all.single.size(); ++k)
+    row(all.single[k].point) += all.single[k].light * through.row(static_cast<Eigen::Index>(to_lamps + k));
+
+  if (lighting.sky) irradiance += SkySampler(lighting, points, rays).irradiance();
+  return irradiance;
+}
+
 SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings) {
   std::vector<std::size_t> order(aim.probabilities.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -411,13 +392,9 @@ SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings) {
   std::size_t triangles = 0;
   for (const std::size_t k : order) {
     triangles += openings[k].triangles.size();
-    if (triangles > most_triangles) aim.probabilities[k] = 0;
+    if (triangles > 32) aim.probabilities[k] = 0;
   }
   return aim;
-}
-
-Field sky_samples(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays) {
-  return SkySampler(lighting, points, rays).irradiance();
 }
 
 }  // namespace patchlight

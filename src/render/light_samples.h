@@ -37,13 +37,13 @@ class SphericalTriangle {
   double solid_angle_ = 0;
 };
 
-/// What gives light straight to points.
+/// The lights that shine straight on points.
 struct Lights {
   std::vector<LampFace> lamps;  ///< emitting faces
   const Lighting& lighting;     ///< luminaires, sun and sky
 };
 
-/// A point that gets light, and what its random numbers follow from.
+/// A point that gets light, and the origin of its random numbers.
 struct LitPoint {
   SurfacePoint at;
   std::uint32_t sample = 0;     ///< place in a sequence: those of one sequence are spread evenly together
@@ -59,10 +59,5 @@ Field light_samples(const Lights& lights, std::span<const LitPoint> points, std:
 /// An aim at its most probable openings, as each point looks at all triangles of these; others are left to rays over
 /// the hemisphere.
 SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings);
-
-/// One estimate of the irradiance of each point (row) by sky and ground, W/m^2 per band; its mean over all samples is
-/// the irradiance. There must be a sky. `rays` go from each point that has an aim: all but one to openings, where its
-/// aim has any, and others over the hemisphere for what comes from elsewhere.
-Field sky_samples(const Lighting& lighting, std::span<const LitPoint> points, std::uint32_t rays);
 
 }  // namespace patchlight

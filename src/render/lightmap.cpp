@@ -1,13 +1,10 @@
 #include "render/lightmap.h"
 
-#include "patchlight/render/image.h"
-
 #include "base/parallel.h"
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "mesh/patch_lookup.h"
-#include "render/gathered_light.h"
-#include "render/lens.h"
-#include "render/lightmap_charts.h"
+#include "render/camera.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Geometry>
@@ -15,18 +12,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
-
-// Sight lines along a surface, and rays down to it, begin this share of a texel above it.
-constexpr double lift_of_texels = 0.05;
 
 // A texel beside a chart, and one of the chart beside it.
 struct RimTexel {
@@ -38,6 +29,11 @@ struct RimTexel {
 
 Point middle_of_texel(const LightmapChart& chart, int x, int y) {
   return chart.corner + (x + 0.5) * chart.texel[0] * chart.right + (y + 0.5) * chart.texel[1] * chart.down;
+}
+
+Eigen::Vector2d in_texels(const LightmapChart& chart, const Point& point) {
+  const Vector from = point - chart.corner;
+  return {chart.right.dot(from) / chart.texel[0], chart.down.dot(from) / chart.texel[1]};
 }
 
 class Neighbours {
@@ -101,8 +97,8 @@ std::vector<RimTexel> Neighbours::rim_of(const LightmapChart& chart) const {
 
 // Interpolated among the texels of a chart that have a surface.
 void Neighbours::take_light(const RimTexel& one, const LightmapChart& from) {
-  const double x = from.right.dot(one.point - from.corner) / from.texel[0] - 0.5;
-  const double y = from.down.dot(one.point - from.corner) / from.texel[1] - 0.5;
+  const Eigen::Vector2d place = in_texels(from, one.point);
+  const double x = place.x() - 0.5, y = place.y() - 0.5;
   const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
   double total = 0;
   std::array<double, 4> weights{};
@@ -134,7 +130,7 @@ void Neighbours::take_light(const RimTexel& one, const LightmapChart& from) {
 void Neighbours::lit_by_others(std::size_t chart) {
   const LightmapChart& own = map_.charts[chart];
   const Vector& normal = solved_.mesh.normal[own.patches.front()];
-  const Vector above = lift_of_texels * map_.texel * normal;
+  const Vector above = 0.05 * map_.texel * normal;  // of sight lines along the surface, and rays down to it
   const std::vector<RimTexel> rim = rim_of(own);
   std::vector<Ray> down;
   std::vector<Segment> along;
@@ -153,9 +149,8 @@ void Neighbours::lit_by_others(std::size_t chart) {
   }
 }
 
-// The map with the light of coplanar neighbours at the texels around each chart: where another chart goes on in its
-// plane, and no wall stands between, what is interpolated at their common edge is the same from both. Of a map with
-// padding.
+// The map with the light of coplanar neighbors at the texels around each chart: where another chart goes on in its
+// plane, and no wall stands between, both interpolate the same at their common edge. Of a map with padding.
 Lightmap with_neighbours(Lightmap map, const SolvedLight& solved, const PatchLookup& lookup) {
   const std::size_t charts = map.charts.size();
   Neighbours neighbours(std::move(map), solved, lookup);
@@ -168,24 +163,9 @@ constexpr int bake_block_edge = 16;  // texels that are baked at once
 // Places on a texel are the middles of its parts, so many along each edge, in an order in which each four that follow
 // one another lie in all rows and columns and around the texel's middle.
 constexpr int parts_per_edge = 4;
-constexpr std::array<std::array<int, 2>, 16> order_of_parts = {{{1, 0},
-                                                                {3, 1},
-                                                                {0, 2},
-                                                                {2, 3},
-                                                                {2, 0},
-                                                                {0, 1},
-                                                                {3, 2},
-                                                                {1, 3},
-                                                                {0, 0},
-                                                                {2, 1},
-                                                                {1, 2},
-                                                                {3, 3},
-                                                                {3, 0},
-                                                                {1, 1},
-                                                                {2, 2},
-                                                                {0, 3}}};
-
-constexpr std::size_t parts_of_texel = order_of_parts.size();
+constexpr std::array<int, 16> columns_of_parts = {1, 3, 0, 2, 2, 0, 3, 1, 0, 2, 1, 3, 3, 1, 2, 0};
+constexpr std::array<int, 16> rows_of_parts = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+constexpr std::size_t parts_of_texel = columns_of_parts.size();
 
 // Some texels of a chart, and the patches that reach there.
 struct BakeBlock {
@@ -200,11 +180,6 @@ struct BakePlace {
   std::uint32_t part = 0;
   PatchPoint at;
 };
-
-Eigen::Vector2d in_texels(const LightmapChart& chart, const Point& point) {
-  const Vector from = point - chart.corner;
-  return {chart.right.dot(from) / chart.texel[0], chart.down.dot(from) / chart.texel[1]};
-}
 
 Eigen::AlignedBox2d box_in_texels(const LightmapChart& chart, const PatchCorners& corners) {
   Eigen::AlignedBox2d box;
@@ -246,8 +221,7 @@ class Bake {
  public:
   Bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options);
 
-  void run(const Observer& observer);
-  Lightmap lightmap() && { return std::move(map_); }
+  Lightmap run(const Observer& observer) &&;
 
  private:
   std::vector<BakePlace> places_of(const BakeBlock& block) const;
@@ -286,8 +260,8 @@ Bake::Bake(const SolvedLight& solved, const FieldView& sent_besides, PackedChart
 }
 
 Point Bake::place_on(const LightmapChart& chart, int x, int y, std::size_t part) const {
-  const auto [column, row] = order_of_parts[part];
-  const double u = x + (column + 0.5) / parts_per_edge, v = y + (row + 0.5) / parts_per_edge;
+  const double u = x + (columns_of_parts[part] + 0.5) / parts_per_edge;
+  const double v = y + (rows_of_parts[part] + 0.5) / parts_per_edge;
   return chart.corner + u * chart.texel[0] * chart.right + v * chart.texel[1] * chart.down;
 }
 
@@ -336,8 +310,7 @@ bool Bake::sees_backs(const BakePlace& place, std::span<const Vector> directions
 // rays from there meet its inner sides, the others perhaps faces that run on under it as well. Under a face that hangs
 // close over the place those around the horizon get out.
 bool Bake::is_buried(const BakePlace& place, std::uint32_t seed) const {
-  constexpr std::uint32_t rays_of_place = 8;
-  constexpr double grazing_slope = 1e-3;
+  const std::uint32_t rays_of_place = 8;
   const Vector& normal = solved_.mesh.normal[place.at.patch];
   std::vector<Vector> directions;
   for (std::uint32_t k = 0; k < rays_of_place; ++k) {
@@ -348,8 +321,7 @@ bool Bake::is_buried(const BakePlace& place, std::uint32_t seed) const {
   const Vector right = normal.unitOrthogonal();
   for (std::uint32_t k = 0; k < rays_of_place; ++k) {
     const double azimuth = 2 * std::numbers::pi * k / rays_of_place;
-    directions[k] =
-        (std::cos(azimuth) * right + std::sin(azimuth) * normal.cross(right) + grazing_slope * normal).normalized();
+    directions[k] = (std::cos(azimuth) * right + std::sin(azimuth) * normal.cross(right) + 1e-3 * normal).normalized();
   }
   return sees_backs(place, directions);
 }
@@ -368,7 +340,7 @@ std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
     places.push_back({texel, static_cast<std::uint32_t>(part), {place_on(chart, x, y, part), at[k]}});
     has_place[texel] = 1;
   }
-  // Of what is smaller than parts are apart, the middle
+  // The middle of patches that lie between all parts
   for (const PatchIndex patch : block.patches) {
     const Eigen::Vector2d middle = in_texels(chart, solved_.mesh.centroid[patch]);
     const int x = std::clamp(static_cast<int>(std::floor(middle.x())), 0, chart.width - 1) - block.left;
@@ -380,7 +352,7 @@ std::vector<BakePlace> Bake::places_of(const BakeBlock& block) const {
     places.push_back({texel, 0, {solved_.mesh.centroid[patch], patch}});
   }
   std::erase_if(places, [&](const BakePlace& place) {
-    return is_buried(place, hash({key_of(texel_of(block, place.texel)), 3, place.part}));
+    return is_buried(place, hash({key_of(texel_of(block, place.texel)), stream::buried_texels, place.part}));
   });
   std::stable_sort(places.begin(), places.end(),
                    [](const BakePlace& a, const BakePlace& b) { return a.texel < b.texel; });
@@ -395,18 +367,11 @@ std::size_t Bake::texel_of(const BakeBlock& block, std::size_t of_block) const {
 }
 
 Field Bake::direct_at(const BakeBlock& block, const std::vector<BakePlace>& places) const {
-  std::map<PatchIndex, SkyAim> aims;
+  SkyAims aims;
   std::vector<LitPoint> points;
   for (const BakePlace& place : places) {
-    const PatchIndex patch = place.at.patch;
-    const SkyAim* aim = nullptr;
-    if (solved_.lights.lighting.sky) {
-      auto known = aims.find(patch);
-      if (known == aims.end()) known = aims.emplace(patch, gather_.aim_at(patch)).first;
-      aim = &known->second;
-    }
-    const SurfacePoint at{place.at.point, solved_.mesh.normal[patch], solved_.mesh.polygon[patch]};
-    points.push_back({at, place.part, hash({key_of(texel_of(block, place.texel)), 1}), aim});
+    const std::uint32_t seed = hash({key_of(texel_of(block, place.texel)), stream::lights_of_texel});
+    points.push_back(gather_.lit_point(place.at, place.part, seed, aims));
   }
   return light_samples(solved_.lights, points, static_cast<std::uint32_t>(options_.rays_to_lights));
 }
@@ -419,7 +384,7 @@ IrradianceRecord Bake::gathered(std::span<const BakePlace> places, std::size_t t
   const std::size_t count = std::min(places.size(), static_cast<std::size_t>(options_.gathers));
   for (std::size_t k = 0; k < count; ++k) {
     const IrradianceRecord one =
-        gather_.record_at(places[k].at, hash({key_of(texel), 2, k}), 1, 1, options_.hemisphere);
+        gather_.record_at(places[k].at, hash({key_of(texel), stream::gathers_of_texel, k}), 1, 1, options_.hemisphere);
     mean.irradiance += one.irradiance / static_cast<double>(count);
     variance += one.uncertainty * one.uncertainty;
   }
@@ -453,18 +418,17 @@ void Bake::bake_block(const BakeBlock& block) {
   }
 }
 
-void Bake::run(const Observer& observer) {
+Lightmap Bake::run(const Observer& observer) && {
   parallel_for(blocks_.size(), Stage::render, observer, [&](std::size_t b) { bake_block(blocks_[b]); });
+  return std::move(map_);
 }
 
 }  // namespace
 
 Lightmap bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options,
               const Observer& observer) {
-  Bake baking(solved, sent_besides, std::move(charts), options);
-  baking.run(observer);
-  const PatchLookup lookup(solved.mesh);
-  return with_neighbours(with_padding(std::move(baking).lightmap(), lightmap_padding), solved, lookup);
+  Lightmap map = Bake(solved, sent_besides, std::move(charts), options).run(observer);
+  return with_neighbours(with_padding(std::move(map), lightmap_padding), solved, PatchLookup(solved.mesh));
 }
 
 }  // namespace patchlight

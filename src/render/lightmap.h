@@ -1,14 +1,49 @@
 #pragma once
 
 #include "patchlight/base/progress.h"
+#include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/render/image.h"
+#include "patchlight/scene/scene.h"
 
 #include "render/gathered_light.h"
-#include "render/lightmap_charts.h"
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace patchlight {
+
+/// Texels around each chart that belong to it alone and repeat its light: interpolation at its edge then takes nothing
+/// of another chart.
+inline constexpr int lightmap_padding = 2;
+
+/// The largest width and height of a lightmap, texels.
+inline constexpr int most_lightmap_edge = 4096;
+
+/// One chart for each group of coplanar faces, sides of polygons, of one material that share edges from corner to
+/// corner; none for clear faces, which light goes through. Along its longest outer edge, without places yet. In the
+/// order of the scene's polygons. O(n log n) for n corners.
+std::vector<LightmapChart> charts_of(const Scene& scene, const PatchMesh& mesh);
+
+/// The charts at their places in a map: in rows, the highest first, with padding around each. Width and height are
+/// powers of two.
+struct PackedCharts {
+  std::vector<LightmapChart> charts;
+  int width = 0;
+  int height = 0;
+  double texel = 0;  ///< meters
+};
+
+/// In the smallest square for texels of this size, or of the smallest size for which they fit into the largest map.
+/// Without a size with the smallest texels for which they fit into 256 x 256 texels, or, where there are so many charts
+/// that padding would take half of it, into the next larger square.
+/// \throws InputError when they fit into no map.
+PackedCharts packed_charts(const std::vector<LightmapChart>& charts, const std::optional<double>& texel);
+
+/// The map with light at so many texels around each chart, and around its holes. Beside a known texel the light goes on
+/// linearly from it and the one behind it, within 0 and twice its light, so that interpolation at the edge of a chart
+/// is right; farther out it is the mean of the texels beside.
+Lightmap with_padding(Lightmap map, int texels);
 
 /// How the light at texels is found.
 struct BakeOptions {
@@ -18,10 +53,10 @@ struct BakeOptions {
   std::uint32_t seed = 1;
 };
 
-/// Bakes the light at the texels of charts: straight from lights by shadow rays, and what patches reflect by a final
-/// gather into the solution, as pictures have it. `sent_besides` is what each patch sends out that does not follow from
-/// the irradiance on its front: its exitance and what comes through a sheet, W/m^2. Same bits for any number of
-/// threads. \throws Cancelled.
+/// Bakes the light at the texels of charts: straight from lights by shadow rays, and reflected light by a final gather
+/// into the solution, as in pictures. `sent_besides` is the light of each patch that does not follow from the
+/// irradiance on its front: its exitance and the light through a sheet, W/m^2. Same bits for any number of threads.
+/// \throws Cancelled.
 Lightmap bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options,
               const Observer& observer = {});
 

@@ -1,14 +1,15 @@
-#include "render/lightmap_charts.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/mesh/patch_mesh.h"
+
+#include "base/disjoint_sets.h"
+#include "base/tolerances.h"
+#include "render/lightmap.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -18,12 +19,6 @@
 
 namespace patchlight {
 namespace {
-
-constexpr int usual_lightmap_edge = 256;  // texels
-constexpr int least_lightmap_edge = 16;
-
-// Faces count as coplanar where their unit normals differ by less: less than joined faces are allowed to.
-constexpr double coplanar_tolerance = 1e-4;
 
 // A side of a polygon with patches.
 struct ChartFace {
@@ -78,25 +73,20 @@ EdgesOfFaces edges_of(const Scene& scene, const std::vector<ChartFace>& faces) {
 
 // The chart of each face: numbers from 0 in the order of their first faces.
 std::vector<std::size_t> chart_numbers(const std::vector<ChartFace>& faces, const FacesAtEdges& edges) {
-  std::vector<std::size_t> first(faces.size());
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  const auto root = [&](std::size_t face) {
-    while (first[face] != face) face = first[face] = first[first[face]];
-    return face;
-  };
+  DisjointSets charts(faces.size());
   for (const auto& [edge, around] : edges) {
     for (std::size_t k = 0; k < around.size(); ++k) {
       for (std::size_t l = k + 1; l < around.size(); ++l) {
         const ChartFace &a = faces[around[k]], &b = faces[around[l]];
-        if (a.material != b.material || (a.normal - b.normal).norm() > coplanar_tolerance) continue;
-        const std::size_t one = root(around[k]), other = root(around[l]);
-        first[std::max(one, other)] = std::min(one, other);
+        // Joined faces may differ by more.
+        if (a.material != b.material || (a.normal - b.normal).norm() > 1e-4) continue;
+        charts.join(static_cast<std::uint32_t>(around[k]), static_cast<std::uint32_t>(around[l]));
       }
     }
   }
   std::vector<std::size_t> numbers(faces.size());
   std::size_t count = 0;
-  for (std::size_t f = 0; f < faces.size(); ++f) numbers[f] = root(f) == f ? count++ : numbers[root(f)];
+  for (std::uint32_t f = 0; f < faces.size(); ++f) numbers[f] = charts.root(f) == f ? count++ : numbers[charts.root(f)];
   return numbers;
 }
 
@@ -115,7 +105,7 @@ std::vector<Vector> longest_outer_edges(const EdgesOfFaces& edges, const std::ve
   return longest;
 }
 
-// Lower and upper ends of a chart along its axes, metres from its corner.
+// Lower and upper ends of a chart along its axes, meters from its corner.
 Eigen::AlignedBox2d extent_in_plane(const LightmapChart& chart, const PatchMesh& mesh) {
   Eigen::AlignedBox2d extent;
   for (const PatchIndex patch : chart.patches) {
@@ -140,9 +130,11 @@ LightmapChart with_axes(LightmapChart chart, const PatchMesh& mesh, const Vector
   return chart;
 }
 
-// How many texels a length needs, which are as long or shorter, so that a chart ends where a texel does. What is longer
-// by rounding takes no texel more.
-double texels_over(double length, double texel) { return std::max(1.0, std::ceil(length / texel - 1e-6)); }
+// The number of texels, as long or shorter, that a length is cut into. A length that is longer by rounding needs no
+// texel more.
+double texels_over(double length, double texel) {
+  return std::max(1.0, std::ceil(length / texel - tolerance_of_coordinates));
+}
 
 // Charts in rows from the left, the highest first. Nothing when they do not fit into a square.
 std::optional<PackedCharts> packed_into(std::vector<LightmapChart> charts, int edge, double texel) {
@@ -202,42 +194,6 @@ std::optional<PackedCharts> fitted_into(const std::vector<LightmapChart>& charts
                                           std::to_string(most_lightmap_edge) + " texels cannot hold a chart for each");
 }
 
-}  // namespace
-
-std::vector<LightmapChart> charts_of(const Scene& scene, const PatchMesh& mesh) {
-  const std::vector<ChartFace> faces = chart_faces(scene, mesh);
-  const EdgesOfFaces edges = edges_of(scene, faces);
-  const std::vector<std::size_t> numbers = chart_numbers(faces, edges.faces);
-  std::vector<LightmapChart> charts(numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (PatchIndex patch = faces[f].patches.begin; patch < faces[f].patches.end; ++patch)
-      charts[numbers[f]].patches.push_back(patch);
-  }
-  const std::vector<Vector> along = longest_outer_edges(edges, numbers, charts.size());
-  for (std::size_t c = 0; c < charts.size(); ++c) charts[c] = with_axes(std::move(charts[c]), mesh, along[c]);
-  return charts;
-}
-
-PackedCharts packed_charts(const std::vector<LightmapChart>& charts, const std::optional<double>& texel) {
-  if (!texel) {
-    constexpr double least_cell = (1.0 + 2 * lightmap_padding) * (1.0 + 2 * lightmap_padding);
-    int edge = usual_lightmap_edge;
-    const double least_area = static_cast<double>(charts.size()) * least_cell;
-    while (edge < most_lightmap_edge && 0.5 * edge * edge < least_area) edge *= 2;
-    for (; edge <= most_lightmap_edge; edge *= 2) {
-      if (auto packed = fitted_into(charts, edge)) return *std::move(packed);
-    }
-    refuse_so_many(charts.size());
-  }
-  for (int edge = least_lightmap_edge; edge <= most_lightmap_edge; edge *= 2) {
-    if (auto packed = packed_into(charts, edge, *texel)) return *std::move(packed);
-  }
-  if (auto fitted = fitted_into(charts, most_lightmap_edge)) return *std::move(fitted);
-  refuse_so_many(charts.size());
-}
-
-namespace {
-
 using Step = std::array<int, 2>;
 constexpr std::array<Step, 4> straight_steps = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 constexpr std::array<Step, 4> diagonal_steps = {{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
@@ -272,7 +228,7 @@ std::optional<Eigen::Index> Padding::known(int x, int y) const {
   return texel;
 }
 
-// The mean of what the texels in some directions say; nothing when none of them is known.
+// The mean of the light that the texels in some directions go on with; nothing when none of them is known.
 std::optional<PaddingTexel> Padding::light_at(int x, int y, const std::array<Step, 4>& steps, bool linearly) const {
   const std::array<const TexelField*, 3> fields = {&map_.direct, &map_.indirect, &map_.radiance};
   PaddingTexel found{static_cast<Eigen::Index>(y) * map_.width + x, {}};
@@ -315,6 +271,38 @@ void Padding::grow(bool linearly) {
 }
 
 }  // namespace
+
+std::vector<LightmapChart> charts_of(const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<ChartFace> faces = chart_faces(scene, mesh);
+  const EdgesOfFaces edges = edges_of(scene, faces);
+  const std::vector<std::size_t> numbers = chart_numbers(faces, edges.faces);
+  std::vector<LightmapChart> charts(numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end()) + 1);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (PatchIndex patch = faces[f].patches.begin; patch < faces[f].patches.end; ++patch)
+      charts[numbers[f]].patches.push_back(patch);
+  }
+  const std::vector<Vector> along = longest_outer_edges(edges, numbers, charts.size());
+  for (std::size_t c = 0; c < charts.size(); ++c) charts[c] = with_axes(std::move(charts[c]), mesh, along[c]);
+  return charts;
+}
+
+PackedCharts packed_charts(const std::vector<LightmapChart>& charts, const std::optional<double>& texel) {
+  if (!texel) {
+    const int least_cell = (1 + 2 * lightmap_padding) * (1 + 2 * lightmap_padding);
+    int edge = 256;
+    const double least_area = static_cast<double>(charts.size()) * least_cell;
+    while (edge < most_lightmap_edge && 0.5 * edge * edge < least_area) edge *= 2;
+    for (; edge <= most_lightmap_edge; edge *= 2) {
+      if (auto packed = fitted_into(charts, edge)) return *std::move(packed);
+    }
+    refuse_so_many(charts.size());
+  }
+  for (int edge = 16; edge <= most_lightmap_edge; edge *= 2) {
+    if (auto packed = packed_into(charts, edge, *texel)) return *std::move(packed);
+  }
+  if (auto fitted = fitted_into(charts, most_lightmap_edge)) return *std::move(fitted);
+  refuse_so_many(charts.size());
+}
 
 Lightmap with_padding(Lightmap map, int texels) {
   Padding padding(std::move(map));

@@ -1,42 +1,27 @@
 #include "render/render.h"
 
 #include "base/parallel.h"
-#include "mesh/patch_lookup.h"
-#include "render/lens.h"
-#include "visibility/occluder.h"
+#include "base/sampling.h"
+#include "base/streams.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
-constexpr int most_crossings = 64;  // sides without patches that one ray may pass
-
-// Of what a ray sees over several mirrors less than this is left out.
-constexpr double least_share = 0.01;
-
-// Rays that are still under way.
+// Rays under way, with where each has begun, its share, outlook and distance so far.
 struct UnderWay {
   std::vector<Ray> rays;
-  std::vector<std::size_t> of_ray;  // where each has begun
-  std::vector<double> shares;
-  std::vector<double> gone;              // metres so far
-  std::vector<std::uint8_t> is_through;  // 1 behind a clear face
+  std::vector<SeenPatch> so_far;
 
-  void add(const Ray& ray, std::size_t begun, double share, double so_far, bool through) {
+  void add(const Ray& ray, const SeenPatch& from, double share, bool outlook) {
     rays.push_back(ray);
-    of_ray.push_back(begun);
-    shares.push_back(share);
-    gone.push_back(so_far);
-    is_through.push_back(through ? 1 : 0);
+    so_far.push_back({.ray = from.ray, .share = share, .outlook = outlook, .distance = from.distance});
   }
 };
 
@@ -60,73 +45,25 @@ MetSphere met_by(const Ray& ray, const std::vector<SeenSphere>& spheres) {
   return met;
 }
 
-}  // namespace
-
-std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires) {
-  std::vector<SeenSphere> spheres;
-  for (const Luminaire& luminaire : luminaires) {
-    const auto* const lamp = std::get_if<SphericalLamp>(&luminaire.light);
-    if (lamp != nullptr) spheres.push_back({luminaire.position, lamp->radius, lamp->exitance / std::numbers::pi});
-  }
-  return spheres;
+// Goes on from a face: through a side without a patch or a clear face, and from a mirror unless the reflection is
+// faint.
+void follow(UnderWay& next, const Occluder& occluder, const Hit& hit, const SeenPatch& seen) {
+  const Ray onward{hit.point, hit.direction, hit.polygon};
+  if (!seen.patch) return next.add(onward, seen, seen.share, seen.outlook);
+  const double through = seen.share * occluder.transmittance(hit.polygon, hit.direction);
+  if (through > 0) next.add(onward, seen, through, true);
+  const double reflected = seen.share * occluder.specular_reflectance(hit.polygon, hit.direction);
+  if (reflected > 0.01)
+    next.add({hit.point, occluder.mirrored(hit.polygon, hit.direction), hit.polygon}, seen, reflected, seen.outlook);
 }
-
-std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
-                               const std::vector<SeenSphere>& spheres) {
-  std::vector<SeenPatch> seen;
-  UnderWay now;
-  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], k, 1, 0, false);
-  for (int crossing = 0; crossing <= most_crossings && !now.rays.empty(); ++crossing) {
-    const std::vector<std::optional<Hit>> hits = occluder.first_hits(now.rays);
-    UnderWay next;
-    for (std::size_t k = 0; k < now.rays.size(); ++k) {
-      const std::optional<Hit>& hit = hits[k];
-      const std::size_t begun = now.of_ray[k];
-      const double share = now.shares[k];
-      const bool through = now.is_through[k] != 0;
-      if (const MetSphere met = met_by(now.rays[k], spheres); met.sphere && (!hit || met.distance < hit->distance)) {
-        const Point place = now.rays[k].origin + met.distance * now.rays[k].direction;
-        seen.push_back(
-            {begun, {}, place, now.rays[k].direction, share, through, now.gone[k] + met.distance, met.sphere});
-        continue;
-      }
-      if (!hit) {
-        seen.push_back({begun, {}, {}, now.rays[k].direction, share, true, std::numeric_limits<double>::infinity()});
-        continue;
-      }
-      const auto patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
-      const Vector& direction = hit->direction;
-      const double gone = now.gone[k] + hit->distance;
-      if (!patch) {
-        next.add({hit->point, direction, hit->polygon}, begun, share, gone, through);
-        continue;
-      }
-      const double held = share * occluder.relative_held(hit->polygon, direction);
-      seen.push_back({begun, *patch, hit->point, direction, held, through, gone});
-      const double onward = share * occluder.transmittance(hit->polygon, direction);
-      if (onward > 0) next.add({hit->point, direction, hit->polygon}, begun, onward, gone, true);
-      const double reflected = share * occluder.specular_reflectance(hit->polygon, direction);
-      if (reflected > least_share)
-        next.add({hit->point, occluder.mirrored(hit->polygon, direction), hit->polygon}, begun, reflected, gone,
-                 through);
-    }
-    now = std::move(next);
-  }
-  return seen;
-}
-
-namespace {
-
-// Sight lines along a surface run this share of the patch's size above it.
-constexpr double lift = 1e-3;
 
 // Patches whose sight lines are traced together.
 constexpr std::size_t traced_at_once = 64;
 
-// The sight lines from a point of a patch to its corners.
+// The sight lines from a point of a patch to its corners, a thousandth of its size above it.
 void add_sight_lines(std::vector<Segment>& lines, const PatchMesh& mesh, PatchIndex patch, const Point& point) {
   const PatchCorners corners = mesh.corner_points(patch);
-  const Vector above = lift * (corners.points[2] - corners.points[0]).norm() * mesh.normal[patch];
+  const Vector above = 1e-3 * (corners.points[2] - corners.points[0]).norm() * mesh.normal[patch];
   const PolygonIndex own = mesh.polygon[patch];
   for (std::size_t k = 0; k < static_cast<std::size_t>(corners.count); ++k)
     lines.push_back({point + above, corners.points[k] + above, own, own});
@@ -176,7 +113,86 @@ CornerWeights with_every_vertex(const PatchMesh& mesh, CornerWeights weights, co
   return weights;
 }
 
+struct PixelRays {
+  std::vector<Ray> rays;
+  std::vector<Eigen::Index> pixels;  // one for each ray
+};
+
+// The rays of a tile, pixel by pixel. Inside a pixel n^2 rays, one in each cell of an n x n grid and, in the canonical
+// arrangement of Chiu, Shirley and Wang 1994 (Multi-Jittered Sampling), one in each of n^2 columns and rows: an upright
+// edge is resolved in n^2 steps.
+PixelRays camera_rays(const Lens& lens, const RenderOptions& options, const PixelTile& tile) {
+  const int n = options.rays_per_pixel_edge;
+  PixelRays all;
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    for (int x = tile.left; x < tile.right; ++x) {
+      for (int sample = 0; sample < n * n; ++sample) {
+        const int column = sample % n;
+        const int row = sample / n;
+        const auto ray = lens.ray(x + (column + (row + 0.5) / n) / n, y + (row + (column + 0.5) / n) / n);
+        if (!ray) continue;
+        all.rays.push_back(*ray);
+        all.pixels.push_back(static_cast<Eigen::Index>(y) * options.width + x);
+      }
+    }
+  }
+  return all;
+}
+
+constexpr std::uint32_t rays_of_pixel = 32;
+
+// From a place, as far as the distance.
+Segment short_ray(const Point& from, const Vector& normal, PolygonIndex polygon, double distance,
+                  const std::array<double, 2>& u) {
+  return {from, from + distance * cosine_direction(normal, u[0], u[1]), polygon, no_polygon};
+}
+
 }  // namespace
+
+std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires) {
+  std::vector<SeenSphere> spheres;
+  for (const Luminaire& luminaire : luminaires) {
+    const auto* const lamp = std::get_if<SphericalLamp>(&luminaire.light);
+    if (lamp != nullptr) spheres.push_back({luminaire.position, lamp->radius, lamp->exitance / std::numbers::pi});
+  }
+  return spheres;
+}
+
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
+                               const std::vector<SeenSphere>& spheres) {
+  std::vector<SeenPatch> all;
+  UnderWay now;
+  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], {.ray = k}, 1, false);
+  for (int crossing = 0; crossing <= 64 && !now.rays.empty(); ++crossing) {
+    const std::vector<std::optional<Hit>> hits = occluder.first_hits(now.rays);
+    UnderWay next;
+    for (std::size_t k = 0; k < now.rays.size(); ++k) {
+      const std::optional<Hit>& hit = hits[k];
+      SeenPatch seen = now.so_far[k];
+      seen.direction = now.rays[k].direction;
+      const MetSphere met = met_by(now.rays[k], spheres);
+      if (met.sphere && (!hit || met.distance < hit->distance)) {
+        seen.point = now.rays[k].origin + met.distance * seen.direction;
+        seen.distance += met.distance;
+        seen.sphere = met.sphere;
+      } else if (!hit) {
+        seen.outlook = true;
+        seen.distance = std::numeric_limits<double>::infinity();
+      } else {
+        seen.patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
+        seen.point = hit->point;
+        seen.direction = hit->direction;
+        seen.distance += hit->distance;
+        follow(next, occluder, *hit, seen);
+        if (!seen.patch) continue;
+        seen.share *= occluder.relative_held(hit->polygon, hit->direction);
+      }
+      all.push_back(seen);
+    }
+    now = std::move(next);
+  }
+  return all;
+}
 
 SmoothField smooth(const PatchMesh& mesh, const FieldView& patch_values, const Eigen::VectorXd& area,
                    const Occluder& occluder) {
@@ -201,84 +217,99 @@ Eigen::Array<double, 1, Eigen::Dynamic> value_at(const PatchMesh& mesh, const Sm
   return interpolate(mesh, field.at_vertices, patch, weights);
 }
 
-namespace {
-
-constexpr int tile_edge = 32;  // pixels
-
-// A rectangle of pixels [left, right) x [top, bottom).
-struct Tile {
-  int left, top, right, bottom;
-  int width() const { return right - left; }
-  int pixels() const { return width() * (bottom - top); }
-};
-
-std::vector<Tile> tiles_of(const RenderOptions& options) {
-  std::vector<Tile> tiles;
-  for (int top = 0; top < options.height; top += tile_edge) {
-    for (int left = 0; left < options.width; left += tile_edge) {
-      tiles.push_back(
-          {left, top, std::min(left + tile_edge, options.width), std::min(top + tile_edge, options.height)});
-    }
-  }
+std::vector<PixelTile> tiles_of(int width, int height) {
+  const int edge = 32;
+  std::vector<PixelTile> tiles;
+  for (int top = 0; top < height; top += edge)
+    for (int left = 0; left < width; left += edge)
+      tiles.push_back({left, top, std::min(left + edge, width), std::min(top + edge, height)});
   return tiles;
 }
-
-// The rays of a tile, pixel by pixel. Inside a pixel n^2 rays, one in each cell of an n x n grid and, in the canonical
-// arrangement of Chiu, Shirley and Wang 1994 (Multi-Jittered Sampling), one in each of n^2 columns and rows: an upright
-// edge is resolved in n^2 steps.
-struct PixelRays {
-  std::vector<Ray> rays;
-  std::vector<std::size_t> pixels;  // of the tile, one for each ray
-};
-
-PixelRays camera_rays(const Lens& lens, const RenderOptions& options, const Tile& tile) {
-  const int n = options.rays_per_pixel_edge;
-  PixelRays all;
-  all.rays.reserve(static_cast<std::size_t>(tile.pixels()) * static_cast<std::size_t>(n * n));
-  for (int y = tile.top; y < tile.bottom; ++y) {
-    for (int x = tile.left; x < tile.right; ++x) {
-      for (int sample = 0; sample < n * n; ++sample) {
-        const int column = sample % n;
-        const int row = sample / n;
-        const auto ray = lens.ray(x + (column + (row + 0.5) / n) / n, y + (row + (column + 0.5) / n) / n);
-        if (!ray) continue;
-        all.rays.push_back(*ray);
-        all.pixels.push_back(static_cast<std::size_t>((y - tile.top) * tile.width() + x - tile.left));
-      }
-    }
-  }
-  return all;
-}
-
-}  // namespace
 
 Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options, const Observer& observer) {
   const Lens lens(camera, up, options.width, options.height);
   const PatchLookup lookup(mesh);
-  const auto rays_per_edge = static_cast<std::size_t>(options.rays_per_pixel_edge);
-  const std::size_t rays_per_pixel = rays_per_edge * rays_per_edge;
-  Image image{options.width, options.height,
-              Field::Zero(static_cast<Eigen::Index>(options.width) * options.height, radiance.at_vertices.cols()),
-              Eigen::VectorXd::Zero(static_cast<Eigen::Index>(options.width) * options.height)};
+  const double rays_per_pixel = options.rays_per_pixel_edge * options.rays_per_pixel_edge;
+  const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;
+  Image image{options.width, options.height, Field::Zero(count, radiance.at_vertices.cols()),
+              Eigen::VectorXd::Zero(count)};
 
-  const std::vector<Tile> tiles = tiles_of(options);
+  const std::vector<PixelTile> tiles = tiles_of(options.width, options.height);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
-    const Tile& tile = tiles[index];
-    const auto [rays, pixels] = camera_rays(lens, options, tile);
+    const auto [rays, pixels] = camera_rays(lens, options, tiles[index]);
     for (const SeenPatch& seen : seen_by(occluder, lookup, rays, options.spheres)) {
-      const int pixel = static_cast<int>(pixels[seen.ray]);
-      const Eigen::Index x = tile.left + pixel % tile.width();
-      const Eigen::Index y = tile.top + pixel / tile.width();
-      const double share = seen.share / static_cast<double>(rays_per_pixel);
-      if (seen.outlook) image.outlook[y * options.width + x] += share;
-      if (seen.patch) {
-        image.pixels.row(y * options.width + x) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
-      } else if (seen.sphere != nullptr) {
-        image.pixels.row(y * options.width + x) += seen.sphere->radiance * share;
-      } else if (options.surroundings) {
-        image.pixels.row(y * options.width + x) += options.surroundings(seen.direction) * share;
+      const Eigen::Index pixel = pixels[seen.ray];
+      const double share = seen.share / rays_per_pixel;
+      if (seen.outlook) image.outlook[pixel] += share;
+      if (seen.patch)
+        image.pixels.row(pixel) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
+      else if (seen.sphere != nullptr)
+        image.pixels.row(pixel) += seen.sphere->radiance * share;
+      else if (options.surroundings)
+        image.pixels.row(pixel) += options.surroundings(seen.direction) * share;
+    }
+  });
+  return image;
+}
+
+Eigen::VectorXd ambient_occlusion(const PatchMesh& mesh, const Occluder& occluder, double distance,
+                                  std::uint32_t rays) {
+  Eigen::VectorXd free = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.size()));
+  const auto samples = scrambled_sobol(rays, stream::ambient_occlusion);
+  parallel_for(mesh.size(), [&](std::size_t k) {
+    const auto patch = static_cast<PatchIndex>(k);
+    const PatchCorners corners = mesh.corner_points(patch);
+    std::vector<Segment> segments;
+    for (const auto& [u, v, s, t] : samples)
+      segments.push_back(
+          short_ray(square_to_quad(corners.points, u, v), mesh.normal[patch], mesh.polygon[patch], distance, {s, t}));
+    double count = 0;
+    for (const std::uint8_t blocked : occluder.occluded(segments)) count += blocked == 0 ? 1 : 0;
+    free[static_cast<Eigen::Index>(k)] = count / rays;
+  });
+  return free;
+}
+
+Image ambient_image(const Scene& scene, const Occluder& occluder, const Lens& lens, int width, int height,
+                    double distance) {
+  const Eigen::Index pixels = static_cast<Eigen::Index>(width) * height;
+  Image image{width, height, Field::Zero(pixels, number_of_bands(scene)), Eigen::VectorXd::Zero(pixels)};
+  parallel_for(static_cast<std::size_t>(height), [&](std::size_t y) {
+    std::vector<Ray> rays;
+    std::vector<Eigen::Index> of_pixel;
+    std::vector<std::array<double, 2>> numbers;
+    for (int x = 0; x < width; ++x) {
+      const Eigen::Index pixel = static_cast<Eigen::Index>(y) * width + x;
+      for (std::uint32_t k = 0; k < rays_of_pixel; ++k) {
+        const auto u = pixel_sample(k, hash({static_cast<std::uint64_t>(pixel), stream::ambient_occlusion}));
+        const auto ray = lens.ray(x + 0.5 + tent(u[0]), static_cast<double>(y) + 0.5 + tent(u[1]));
+        if (!ray) continue;
+        rays.push_back(*ray);
+        of_pixel.push_back(pixel);
+        numbers.push_back({u[2], u[3]});
       }
+    }
+    const auto hits = occluder.first_hits(rays);
+    std::vector<Segment> segments;
+    std::vector<std::size_t> of_segment;
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      if (!hits[k]) {
+        image.outlook[of_pixel[k]] += 1.0 / rays_of_pixel;
+        continue;
+      }
+      const Hit& hit = *hits[k];
+      const Vector normal = (hit.side == Side::front ? 1 : -1) * front_normal(scene, hit.polygon);
+      segments.push_back(short_ray(hit.point, normal, hit.polygon, distance, numbers[k]));
+      of_segment.push_back(k);
+    }
+    const std::vector<std::uint8_t> blocked = occluder.occluded(segments);
+    for (std::size_t n = 0; n < segments.size(); ++n) {
+      if (blocked[n] != 0) continue;
+      const Hit& hit = *hits[of_segment[n]];
+      const Material& material = scene.materials[material_on(scene.polygons[hit.polygon], hit.side)];
+      // A darker surface would hide its shape.
+      image.pixels.row(of_pixel[of_segment[n]]) += material.reflectance.max(0.02) / rays_of_pixel;
     }
   });
   return image;

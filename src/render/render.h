@@ -9,52 +9,53 @@
 
 #include "mesh/interpolate.h"
 #include "mesh/patch_lookup.h"
+#include "render/camera.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
 namespace patchlight {
 
-/// A sphere that emits evenly and hides what is behind it.
+/// A sphere that emits evenly and is opaque.
 struct SeenSphere {
   Point centre;
-  double radius = 0;  ///< metres
+  double radius = 0;  ///< meters
   Spectrum radiance;  ///< W/(m^2 sr)
 };
 
 /// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
 struct SeenPatch {
   std::size_t ray = 0;
-  std::optional<PatchIndex> patch;
+  std::optional<PatchIndex> patch = {};
   Point point = Point::Zero();  ///< on the patch
-  Vector direction;
-  double share = 1;                    ///< of its light that gets through what is before it
+  Vector direction = Vector::Zero();
+  double share = 1;                    ///< of its light that gets through the faces before it
   bool outlook = false;                ///< behind a clear face, or nothing is met
-  double distance = 0;                 ///< along the way from the ray's origin, metres
-  const SeenSphere* sphere = nullptr;  ///< that is seen in place of a patch
+  double distance = 0;                 ///< along the way from the ray's origin, meters
+  const SeenSphere* sphere = nullptr;  ///< seen in place of a patch
 };
 
 /// The luminaires that are spheres.
 std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires);
 
-/// What rays see: the first patch that each meets and, as long as that is clear or a mirror, what is behind it and in
-/// it. Rays pass sides without patches: they go on from there. They end on spheres.
+/// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
+/// in it. Rays pass sides without patches and end on spheres.
 std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
                                const std::vector<SeenSphere>& spheres = {});
 
 /// Patch values as a smooth field, for display and for values at points.
 struct SmoothField {
-  Field at_vertices;  ///< one row per vertex of the mesh
-  CornerWeights
-      weights;  ///< of each patch at its corners: 0 where a wall stands between the corner and the patch's centre
+  Field at_vertices;      ///< one row per vertex of the mesh
+  CornerWeights weights;  ///< of each patch at its corners: 0 where a wall stands between corner and centroid
 };
 
 /// Means at the vertices, weighted by `area` in m^2, the exposed area of each patch. A patch does not contribute to a
-/// corner that its centre cannot see along the surface: so the two sides of a wall that stands on a patch do not mix,
+/// corner that its center cannot see along the surface: so the two sides of a wall that stands on a patch do not mix,
 /// and light does not leak farther than the patch.
 SmoothField smooth(const PatchMesh& mesh, const FieldView& patch_values, const Eigen::VectorXd& area,
                    const Occluder& occluder);
@@ -62,6 +63,14 @@ SmoothField smooth(const PatchMesh& mesh, const FieldView& patch_values, const E
 /// The smooth field at a point of a patch. Where a wall stands on the patch, from those corners that the point can see.
 Eigen::Array<double, 1, Eigen::Dynamic> value_at(const PatchMesh& mesh, const SmoothField& field,
                                                  const Occluder& occluder, PatchIndex patch, const Point& point);
+
+/// A rectangle of pixels [left, right) x [top, bottom).
+struct PixelTile {
+  int left, top, right, bottom;
+};
+
+/// A picture cut into tiles for parallel work.
+std::vector<PixelTile> tiles_of(int width, int height);
 
 /// Size and fineness of a picture.
 struct RenderOptions {
@@ -79,12 +88,14 @@ struct RenderOptions {
 Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 
-/// A view that shows most of the kept sides. Where an upright side of the scene's bounds is open, from before it
-/// through the opening; otherwise from a corner of the bounds, inside, at eye height, to the opposite one. Of several
-/// such views that from which the most different polygons are seen over the widest part of the picture.
-Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
+/// The share of the hemisphere, weighted by the cosine, in which nothing opaque lies within a distance in meters: the
+/// mean over each patch, by so many rays. 1 before an open sky, 0 in a closed room smaller than that.
+Eigen::VectorXd ambient_occlusion(const PatchMesh& mesh, const Occluder& occluder, double distance,
+                                  std::uint32_t rays = 256);
 
-/// True when most of an upright side of the bounds is a hole through which one sees into the depth, onto kept sides.
-bool has_open_side(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
+/// A picture without light, of faces as bright as their reflectance times that share at each point. The occluder must
+/// have all faces.
+Image ambient_image(const Scene& scene, const Occluder& occluder, const Lens& lens, int width, int height,
+                    double distance);
 
 }  // namespace patchlight

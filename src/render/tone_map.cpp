@@ -9,11 +9,10 @@
 namespace patchlight {
 namespace {
 
-constexpr double percentile = 0.9;        // of the luminances above 0, by weight ...
-constexpr double percentile_value = 0.7;  // ... is shown as this share of white
+constexpr double percentile_value = 0.7;  // of white: shows the 90th percentile of the luminances above 0
 constexpr double shoulder = 0.8;          // luminances above this share of white are compressed
 
-// Luminance in units in which a grey radiance of 1 has luminance 1.
+// Luminance in units in which a gray radiance of 1 has luminance 1.
 double display_luminance(const Spectrum& radiance, const Bands& bands) {
   return luminance(radiance, bands) / luminous_efficacy;
 }
@@ -56,7 +55,7 @@ double exposure_for(const FieldView& radiance, const Eigen::VectorXd& weight, co
   double below = 0;
   for (const auto& [value, share] : luminances) {
     below += share;
-    if (below >= percentile * total) return percentile_value / value;
+    if (below >= 0.9 * total) return percentile_value / value;
   }
   return percentile_value / luminances.back().first;
 }
@@ -95,19 +94,35 @@ std::vector<std::array<std::uint8_t, 3>> false_color(const Eigen::VectorXd& valu
   return colours;
 }
 
-DisplayImage with_isolines(DisplayImage image, const Eigen::VectorXd& values, const std::vector<double>& levels) {
-  const auto index = [&](int x, int y) { return static_cast<Eigen::Index>(y) * image.width + x; };
-  Eigen::VectorXd smooth(values.size());
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
+double quantile(std::vector<double> values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+bool is_lit(const FieldView& radiance, const Eigen::VectorXd& weight) {
+  return ((radiance.rowwise().maxCoeff() > 0) && (weight.array() > 0)).any();
+}
+
+Eigen::VectorXd box_means(const Eigen::VectorXd& values, int width, int reach) {
+  const int height = static_cast<int>(values.size()) / width;
+  Eigen::VectorXd means(values.size());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
       double sum = 0;
       int count = 0;
-      for (int v = std::max(0, y - 2); v <= std::min(image.height - 1, y + 2); ++v)
-        for (int u = std::max(0, x - 2); u <= std::min(image.width - 1, x + 2); ++u, ++count)
-          sum += values[index(u, v)];
-      smooth[index(x, y)] = sum / count;
+      for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
+        for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u, ++count)
+          sum += values[static_cast<Eigen::Index>(v) * width + u];
+      means[static_cast<Eigen::Index>(y) * width + x] = sum / count;
     }
   }
+  return means;
+}
+
+DisplayImage with_isolines(DisplayImage image, const Eigen::VectorXd& values, const std::vector<double>& levels) {
+  const auto index = [&](int x, int y) { return static_cast<Eigen::Index>(y) * image.width + x; };
+  const Eigen::VectorXd smooth = box_means(values, image.width, 2);
   const auto level_of = [&](double value) { return std::upper_bound(levels.begin(), levels.end(), value); };
   const auto crosses = [&](Eigen::Index a, Eigen::Index b) {
     const double lower = std::min(smooth[a], smooth[b]), upper = std::max(smooth[a], smooth[b]);

@@ -1,35 +1,94 @@
+#include "views/observers.h"
+
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
+#include "base/tolerances.h"
 #include "light/photometry.h"
+#include "lighting/lighting.h"
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"
-#include "render/glare.h"
-#include "render/lens.h"
-#include "views/luminaire_glare.h"
+#include "render/camera.h"
+#include "visibility/occluder.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <vector>
+#include <variant>
 
 namespace patchlight {
 namespace {
 
-// Of the picture of what is in view, over 180 degrees.
+// Of H meters below the line of sight and Y beside it at the distance D: 1 + 0.8 R / D, from R = 0.6 D on 1 + 1.2 R /
+// D. Sources farther to the side than R = 3 D count like these.
+double index_below(double tangent) {
+  const double ratio = std::min(tangent, 3.0);
+  return 1 + (ratio < 0.6 ? 0.8 : 1.2) * ratio;
+}
+
+// Parts of an opening across and along it, whose middles the eye sees or not.
+constexpr int parts = 4;
+
+constexpr double quarter_pi = std::numbers::pi / 4;
+
+using PartsSeen = std::array<Segment, static_cast<std::size_t>(parts) * parts>;
+
+PartsSeen ways_to_parts(const Luminaire& luminaire, const PhotometricWeb& web, const Point& eye) {
+  const Vector side = luminaire.zero_plane.cross(luminaire.aim);
+  PartsSeen ways;
+  for (int row = 0; row < parts; ++row) {
+    for (int column = 0; column < parts; ++column) {
+      const double across = ((row + 0.5) / parts - 0.5) * web.opening[0];
+      const double along = ((column + 0.5) / parts - 0.5) * web.opening[1];
+      ways[static_cast<std::size_t>(row * parts + column)] = {
+          eye, luminaire.position + across * side + along * luminaire.zero_plane};
+    }
+  }
+  return ways;
+}
+
+// Of the picture of the view, over 180 degrees.
 constexpr int view_edge = 512;
 
 // Level directions whose mean is the cylindrical illuminance.
 // E of a point's light is off by 1 - (pi / n) / sin(pi / n) at most, a third of a percent.
 constexpr int directions_around = 32;
 
-// What is seen brighter than this and so many times the mean is a source of glare, as luminaires are; windows always.
-constexpr double least_glare = 500;  // cd/m^2
-constexpr double times_the_mean = 4;
-
 struct View {
   double background = 0;  // cd/m^2: that of the vertical illuminance without sources, over pi
   std::vector<GlareSource> sources;
 };
+
+// The measured luminaires before an eye that looks along a unit direction as sources of glare: luminance I / A_p, solid
+// angle A_p / d^2, CIE 117:1995, in sixteen parts each, as far as the eye sees them. Lamps without extent are left out.
+std::vector<GlareSource> luminaire_glare(const Scene& scene, const Occluder& faces, const Point& eye,
+                                         const Vector& forward, const Vector& upward) {
+  const Bands bands = bands_of(scene);
+  std::vector<GlareSource> sources;
+  for (const Luminaire& luminaire : scene.luminaires) {
+    const WebLight* const light = std::get_if<WebLight>(&luminaire.light);
+    const Vector way = luminaire.position - eye;
+    const double distance = way.norm();
+    if (!light || !(way.dot(forward) > 0)) continue;
+    const Vector towards = way / distance;
+    const double area = projected_opening(*light->web, {luminaire.aim, luminaire.zero_plane}, towards);
+    const Arrival arrival = from_luminaire(luminaire, scene.up, {eye, towards}, Eigen::Vector2d::Zero());
+    if (!(area > 0 && arrival.irradiance > 0)) continue;
+    // I = E d^2 of a plane that faces the luminaire
+    const Spectrum intensity = arrival.irradiance * (distance * distance) * *arrival.colour;
+    const double average = luminance(Spectrum(intensity / area), bands);
+    const double solid_angle = area / (distance * distance) / (parts * parts);
+    const PartsSeen ways = ways_to_parts(luminaire, *light->web, eye);
+    const std::vector<float> seen = faces.transmittance(ways);
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      const Vector direction = (ways[k].to - eye).normalized();
+      if (seen[k] > 0) sources.push_back({seen[k] * average, solid_angle, position_index(direction, forward, upward)});
+    }
+  }
+  return sources;
+}
 
 View view_of(const Simulation& simulation, Camera camera, const Observer& observer) {
   const Scene& scene = simulation.world->scene();
@@ -65,7 +124,8 @@ View view_of(const Simulation& simulation, Camera camera, const Observer& observ
     }
   }
   View view;
-  const double bright = std::max(least_glare, times_the_mean * sum / (2 * std::numbers::pi));
+  // cd/m^2 and times the mean: brighter things are sources of glare, as luminaires are; windows always.
+  const double bright = std::max(500.0, 4 * sum / (2 * std::numbers::pi));
   for (const Seen& seen : all) {
     if (seen.outlook || seen.luminance > bright)
       view.sources.push_back({seen.luminance, seen.solid_angle, position_index(seen.direction, forward, upward)});
@@ -90,6 +150,56 @@ std::vector<Sensor> sensors_of(const Camera& camera, const Scene& scene) {
 }
 
 }  // namespace
+
+double position_index(const Vector& direction, const Vector& forward, const Vector& upward) {
+  const double ahead = std::clamp(direction.dot(forward), -1.0, 1.0);
+  const Vector aside = direction - ahead * forward;
+  if (!(aside.norm() > tolerance_of_shapes)) return 1;
+  if (direction.dot(upward) < 0)
+    return index_below(ahead > 0 ? aside.norm() / ahead : std::numeric_limits<double>::infinity());
+  const double radian = std::numbers::pi / 180;
+  const double sigma = std::acos(ahead) / radian;
+  const double tau = std::acos(std::clamp(aside.dot(upward) / aside.norm(), -1.0, 1.0)) / radian;
+  return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9)) * 1e-3 * sigma +
+                  (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
+}
+
+std::optional<double> unified_glare_rating(std::span<const GlareSource> sources, double background) {
+  double sum = 0;
+  for (const GlareSource& source : sources)
+    sum += std::pow(source.luminance / source.position_index, 2) * source.solid_angle;
+  if (!(sum > 0 && background > 0)) return std::nullopt;
+  return 8 * std::log10(0.25 / background * sum);
+}
+
+double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction) {
+  // Width, length and height, and the cosines between the direction and each.
+  const Vector& sizes = web.opening;
+  const Vector cosines = Vector(direction.dot(frame.zero_plane.cross(frame.aim)), direction.dot(frame.zero_plane),
+                                direction.dot(frame.aim))
+                             .cwiseAbs();
+  // Of the ends of an elliptical cylinder along an axis, and the band of its side.
+  const auto of_cylinder = [&](int axis) {
+    const int p = (axis + 1) % 3, q = (axis + 2) % 3;
+    return quarter_pi * sizes[p] * sizes[q] * cosines[axis] +
+           sizes[axis] * std::hypot(sizes[p] * cosines[q], sizes[q] * cosines[p]);
+  };
+  const Vector faces(sizes[1] * sizes[2] * cosines[0], sizes[0] * sizes[2] * cosines[1],
+                     sizes[0] * sizes[1] * cosines[2]);
+  switch (web.shape) {
+    case OpeningShape::box:
+      return faces.sum();
+    case OpeningShape::upright_cylinder:
+      return of_cylinder(2);
+    case OpeningShape::cylinder_by_length:
+      return of_cylinder(1);
+    case OpeningShape::cylinder_by_width:
+      return of_cylinder(0);
+    case OpeningShape::ellipsoid:
+      return quarter_pi * faces.norm();
+  }
+  return 0;
+}
 
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
                                             const Observer& observer) {

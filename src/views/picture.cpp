@@ -1,25 +1,29 @@
 #include "patchlight/views/picture.h"
 
+#include "patchlight/base/error.h"
+#include "patchlight/scene/sides.h"
+
 #include "base/sampling.h"
 #include "light/photometry.h"
 #include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky_openings.h"
 #include "pipeline/world.h"
+#include "plan/memory.h"
 #include "plan/planned_scene.h"
+#include "render/camera.h"
 #include "render/final_gather.h"
-#include "render/inside_camera.h"
-#include "render/lens.h"
+#include "render/lightmap.h"
 #include "render/render.h"
 #include "render/tone_map.h"
 #include "views/solved_light.h"
-#include "views/surroundings.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -42,22 +46,18 @@ double rounded_up(double value) {
   return 10 * decade;
 }
 
-// Where false colours end: lamps are so much brighter than what they light that only the brightest twentieth of the
-// pixels may lie above.
+// The end of false colors: lamps are so much brighter than all else that the brightest twentieth of the pixels may lie
+// above.
 double end_of_scale(const Eigen::VectorXd& values) {
   std::vector<double> lit;
   std::copy_if(values.begin(), values.end(), std::back_inserter(lit), [](double value) { return value > 0; });
-  if (lit.empty()) return 1;
-  const auto end = lit.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(lit.size() - 1));
-  std::nth_element(lit.begin(), end, lit.end());
-  return rounded_up(*end);
+  return lit.empty() ? 1 : rounded_up(quantile(std::move(lit), 0.95));
 }
 
-// 1 for the pixels that exposure goes by: what is seen of a room, not through its windows; all where that is nothing.
+// 1 for the pixels that exposure goes by: those that show a room, not its windows; all where a room is dark.
 Eigen::VectorXd weight_of_pixels(const Image& image) {
   const Eigen::VectorXd inside = (image.outlook.array() <= 0.5).cast<double>();
-  const bool is_lit = ((image.pixels.rowwise().maxCoeff() > 0) && (inside.array() > 0)).any();
-  return is_lit ? inside : Eigen::VectorXd::Ones(inside.size()).eval();
+  return is_lit(image.pixels, inside) ? inside : Eigen::VectorXd::Ones(inside.size()).eval();
 }
 
 // As it is shown on a display.
@@ -96,6 +96,39 @@ Camera view_of_brightest_room(const Scene& scene, const Simulation& simulation, 
   return default_camera(scene, simulation.plan.sides, occluder);
 }
 
+// Inside the room with most surface, each part as much as it reflects; else one that shows most of the model.
+Camera view_of_model(const Scene& scene, const Occluder& occluder) {
+  const KeptSides sides = kept_sides(scene, Sides::automatic);
+  if (!has_open_side(scene, sides, occluder)) {
+    const SideLight light = reflectance_of_sides(scene, sides);
+    if (const auto camera = inside_camera(floors_of(scene, light), light, scene, occluder)) return *camera;
+  }
+  return default_camera(scene, sides, occluder);
+}
+
+// The light of patches that does not follow from the irradiance on their fronts: E + t H_behind, W/m^2.
+Field sent_besides(const Simulation& simulation) {
+  const Scattering& scattering = simulation.problem.scattering;
+  Field sent = simulation.problem.exitance;
+  if (scattering.other_side.empty()) return sent;
+  for (Eigen::Index patch = 0; patch < sent.rows(); ++patch) {
+    const PatchIndex other = scattering.other_side[static_cast<std::size_t>(patch)];
+    sent.row(patch) += scattering.transmittance.row(patch) * simulation.solution.irradiance.row(other);
+  }
+  return sent;
+}
+
+// Three fields in single precision, once more while they are written, and 8 bytes of each texel.
+void require_memory_of(const PackedCharts& charts, const Simulation& simulation) {
+  const auto bands = static_cast<double>(simulation.problem.exitance.cols());
+  const double bytes = static_cast<double>(charts.width) * charts.height * (2 * 12 * bands + 8);
+  const double usable = usable_memory(simulation.plan.resources);
+  if (bytes <= usable) return;
+  throw InputError("lightmap", "found that " + std::to_string(charts.width) + " x " + std::to_string(charts.height) +
+                                   " texels take " + gigabytes(bytes) + ", and " + gigabytes(usable) +
+                                   " may be taken; expected larger texels or fewer bands");
+}
+
 }  // namespace
 
 Field display_radiance(const Simulation& simulation) {
@@ -114,8 +147,7 @@ double exposure_of(const Simulation& simulation) {
   const Bands bands = bands_of(simulation.world->scene());
   if (simulation.enclosed.size() == 0) return exposure_for(radiance, area, bands);
   const Eigen::VectorXd inside = area.cwiseProduct(simulation.enclosed);
-  const bool is_lit = ((radiance.rowwise().maxCoeff() > 0) && (inside.array() > 0)).any();
-  return exposure_for(radiance, is_lit ? inside : area, bands);
+  return exposure_for(radiance, is_lit(radiance, inside) ? inside : area, bands);
 }
 
 Picture take_picture(const Simulation& simulation, const PictureOptions& options, const Observer& observer) {
@@ -148,6 +180,27 @@ Picture take_picture(const Simulation& simulation, const PictureOptions& options
     taken.image = render(simulation.mesh, radiance, occluder, camera, up, fineness, observer);
   }
   return shown(std::move(taken), camera, options.colors, bands_of(scene));
+}
+
+Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance) {
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const Camera camera = options.camera ? *options.camera : view_of_model(scene, occluder);
+  const Lens lens(camera, picture_up(camera, scene.up, scene.north), options.width, options.height);
+  Picture picture{.image = {.width = options.width, .height = options.height, .pixels = {}}, .camera = camera};
+  picture.radiance = ambient_image(scene, occluder, lens, options.width, options.height, distance);
+  const Bands bands = bands_of(scene);
+  picture.exposure =
+      exposure_for(picture.radiance.pixels, Eigen::VectorXd::Ones(picture.radiance.pixels.rows()), bands);
+  picture.image.pixels = tone_map(picture.radiance.pixels, picture.exposure, bands);
+  return picture;
+}
+
+Lightmap bake_lightmap(const Simulation& simulation, const LightmapOptions& options, const Observer& observer) {
+  PackedCharts charts = packed_charts(charts_of(simulation.world->scene(), simulation.mesh), options.texel);
+  require_memory_of(charts, simulation);
+  BakeOptions baking{.seed = hash({simulation.plan.assembly.seed})};
+  if (!simulates(simulation.plan, Effect::interreflection)) baking.hemisphere.most_bounces = 0;
+  return bake(solved_light(simulation), sent_besides(simulation), std::move(charts), baking, observer);
 }
 
 }  // namespace patchlight

@@ -56,7 +56,7 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
   return all;
 }
 
-// What each band's light meets, where clear faces are coloured.
+// The paths of each band's light, where clear faces are colored.
 std::optional<LightPaths> coloured_paths(const Scene& scene, const Tracing& tracing) {
   const auto is_coloured = [](const Material& material) {
     return material.transmittance.size() > 0 && (material.transmittance != material.transmittance[0]).any();
@@ -65,17 +65,27 @@ std::optional<LightPaths> coloured_paths(const Scene& scene, const Tracing& trac
   return LightPaths(scene, tracing);
 }
 
+// Adds an irradiance with the standard error by its own rays.
+void add(GatheredIrradiance& gathered, const Field& irradiance, const Field& standard_error) {
+  gathered.irradiance += irradiance;
+  gathered.errors.rays = (gathered.errors.rays.square() + standard_error.square()).sqrt();
+}
+
 void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
-  const auto add_squares = [](Field& to, const Field& of) { to = (to.square() + of.square()).sqrt(); };
-  gathered.irradiance += more.irradiance;
-  add_squares(gathered.errors.rays, more.errors.rays);
+  add(gathered, more.irradiance, more.errors.rays);
   // The same patches err in both.
   gathered.errors.sampling += more.errors.sampling;
   gathered.errors.mesh += more.errors.mesh;
   gathered.errors.solver += more.errors.solver;
 }
 
-// What sensors see in mirrors and clear faces: lamps, luminaires, sun and sky over each chain of mirrors, and all other
+std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
+  std::vector<SurfacePoint> points;
+  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+  return points;
+}
+
+// The light in mirrors and clear faces: of lamps, luminaires, sun and sky over each chain of mirrors, and all other
 // light of patches by rays. Nothing where reflections are not followed.
 std::optional<GatheredIrradiance> seen_in_mirrors(const Simulation& simulation, Field sent,
                                                   const std::vector<Sensor>& sensors, const Observer& observer) {
@@ -92,20 +102,17 @@ std::optional<GatheredIrradiance> seen_in_mirrors(const Simulation& simulation, 
     sent.middleRows(begin, end - begin) -= simulation.problem.exitance.middleRows(begin, end - begin);
   }
   const std::uint64_t seed = simulation.plan.assembly.seed;
-  std::vector<SurfacePoint> points;
-  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
   GatheredIrradiance found = gather_mirrored(mesh, sent, lighting.mirrors->view, world.all_faces(), sensors,
                                              {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
-  const DirectIrradiance direct = mirrored_irradiance(lighting, lamps, points, {.seed = seed}, observer);
-  found.irradiance += direct.irradiance;
-  found.errors.rays = (found.errors.rays.square() + direct.standard_error.square()).sqrt();
+  const auto direct = mirrored_irradiance(lighting, lamps, points_of(sensors), {.seed = seed}, observer);
+  add(found, direct.irradiance, direct.standard_error);
   return found;
 }
 
 Readings readings_at(std::span<const SensorPlace> places, const Simulation& simulation, const Observer& observer) {
   const World& world = *simulation.world;
   const Scene& scene = world.sensor_scene();
-  // Without interreflection sensors see what lamps send, and nothing that is reflected.
+  // Without interreflection sensors see the light of lamps alone.
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = free_sensors(places);
@@ -119,11 +126,8 @@ Readings readings_at(std::span<const SensorPlace> places, const Simulation& simu
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
   if (!is_known) errors.solver = Field::Constant(errors.rays.rows(), errors.rays.cols(), std::nan(""));
   if (has_point_or_daylight(scene)) {
-    std::vector<SurfacePoint> points;
-    for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-    const DirectIrradiance direct = direct_irradiance(world.sensor_lighting(), points, {.seed = seed}, observer);
-    gathered.irradiance += direct.irradiance;
-    errors.rays = (errors.rays.square() + direct.standard_error.square()).sqrt();
+    const auto direct = direct_irradiance(world.sensor_lighting(), points_of(sensors), {.seed = seed}, observer);
+    add(gathered, direct.irradiance, direct.standard_error);
   }
   if (const auto mirrored = seen_in_mirrors(simulation, sent, sensors, observer)) add(gathered, *mirrored);
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),

@@ -1,16 +1,20 @@
 #include "views/solved_light.h"
 
 #include "patchlight/views/picture.h"
+#include "patchlight/views/views.h"
 
 #include "light/photometry.h"
 #include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
+#include "lighting/sky.h"
 #include "pipeline/exchange_and_light.h"
 #include "pipeline/lamps_apart.h"
 #include "pipeline/world.h"
+#include "render/render.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -18,11 +22,8 @@
 namespace patchlight {
 namespace {
 
-// A picture looks at so many emitting faces by shadow rays.
-constexpr std::size_t most_lamps = 256;
-
-// The faces that emit much more than most do, the brightest first. The light of those left out is gathered like that of
-// patches which reflect.
+// At most 256 faces that emit much more than most do, the brightest first: pictures send shadow rays to these. The
+// light of others is gathered like that of patches which reflect.
 struct PictureLamps {
   std::vector<LampFace> faces;
   Field exitance;  // of their patches, 0 of all others
@@ -58,7 +59,7 @@ PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) 
   std::stable_sort(sides.begin(), sides.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
   PictureLamps lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
   for (const auto& [patches, flux] : sides) {
-    if (lamps.faces.size() >= most_lamps) break;
+    if (lamps.faces.size() >= 256) break;
     for (LampFace& face : lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin])) {
       face.exitance = exitance.row(patches.begin);
       lamps.faces.push_back(seen_from_front(std::move(face), mesh.side[patches.begin]));
@@ -92,6 +93,39 @@ SolvedLight solved_light(const Simulation& simulation) {
           .transmittance = problem.scattering.transmittance,
           .luminous_weights = weights,
           .scene = &scene};
+}
+
+std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene) {
+  if (!scene.sky) return {};
+  const double sun_cosine = std::cos(0.2665 * std::numbers::pi / 180);  // of the radius as seen from the earth
+  const SkyModel sky = sky_model(*scene.sky, scene.up);
+  return [sky, sun_cosine, sun = scene.sun](const Vector& direction) -> Spectrum {
+    Spectrum seen = radiance(sky, direction);
+    // L = E / solid angle, 2 pi (1 - cos)
+    if (sun && direction.dot(sun->direction) > sun_cosine && direction.dot(sky.up) > 0)
+      seen += sun->normal_irradiance / (2 * std::numbers::pi * (1 - sun_cosine));
+    return seen;
+  };
+}
+
+std::function<Spectrum(const Vector&)> sky_of(const Simulation& simulation) {
+  Scene seen = simulation.world->sensor_scene();
+  seen.sun.reset();
+  return surroundings_of(seen);
+}
+
+SolvedSurface surface_of(const Simulation& simulation, const std::optional<double>& ambient_distance) {
+  const Field radiance = simulation.solution.radiosity / std::numbers::pi;  // L = B / pi
+  const Occluder& occluder = simulation.world->all_faces();
+  const PatchMesh& mesh = simulation.mesh;
+  const Eigen::VectorXd& area = simulation.problem.area;
+  SolvedSurface surface{simulation.world->scene(), simulation, smooth(mesh, radiance, area, occluder).at_vertices};
+  if (ambient_distance) {
+    surface.ambient_occlusion = ambient_occlusion(mesh, occluder, *ambient_distance);
+    surface.ambient_occlusion_at_vertices =
+        smooth(mesh, Field(surface.ambient_occlusion.array()), area, occluder).at_vertices.col(0).matrix();
+  }
+  return surface;
 }
 
 }  // namespace patchlight

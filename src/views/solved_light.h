@@ -6,10 +6,18 @@
 #include "lighting/lighting.h"
 #include "render/gathered_light.h"
 
+#include <functional>
+
 namespace patchlight {
 
-/// What a gather at points needs of a solved scene: the brightest lamps apart from what patches reflect. Keeps a
-/// reference to the simulation, which must outlive it.
+/// A solved scene for gathers at points: the brightest lamps apart from reflected light. Keeps a reference to the
+/// simulation, which must outlive it.
 SolvedLight solved_light(const Simulation& simulation);
+
+/// The radiance, W/(m^2 sr), of sky, ground and the disc of the sun in a unit direction; empty without a sky.
+std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene);
+
+/// That of sky and ground alone, as sensors of a solved scene see them: as far as the plan has them.
+std::function<Spectrum(const Vector&)> sky_of(const Simulation& simulation);
 
 }  // namespace patchlight

@@ -13,7 +13,7 @@
 
 namespace patchlight {
 
-/// What was read, as it was solved.
+/// The scene as it was solved.
 struct SceneFacts {
   std::string file;
   std::string sha256;  ///< of all its files
@@ -25,10 +25,10 @@ struct SceneFacts {
   Vector size = Vector::Zero();  ///< of the bounds, m
   Diagnostics warnings;          ///< problems that can make all results wrong
   Diagnostics notes;             ///< other problems and remarks
-  Bands bands = {};              ///< what spectra are of
+  Bands bands = {};              ///< of its spectra
 };
 
-/// What the patches of one material add up to; spectra have a value per band.
+/// Sums over the patches of one material; spectra have a value per band.
 struct MaterialLight {
   std::string name;
   double area = 0;       ///< m^2
@@ -42,7 +42,7 @@ struct MaterialLight {
   Spectrum radiance;     ///< by area, W/(m^2 sr); not a number without patches
 };
 
-/// What the sensors read.
+/// The readings of sensors.
 struct SensorFacts {
   std::vector<GroupReadings> groups;
   std::string unit;       ///< of their values
@@ -50,7 +50,7 @@ struct SensorFacts {
   Diagnostics warnings;   ///< a sentence for each sensor whose place is in doubt
 };
 
-/// What bounds a room, by the way it faces.
+/// A surface of a room, by the way it faces.
 enum class RoomSurface : std::uint8_t { floor, walls, ceiling };
 
 /// "floor", "walls" or "ceiling".
@@ -68,7 +68,7 @@ struct SurfaceLight {
                            ///< are, by its display error, darker than `min` by more than a tenth
 };
 
-/// What the surfaces of a room get.
+/// The light on the surfaces of a room.
 struct RoomLight {
   std::string name;
   std::array<SurfaceLight, 3> surfaces{};  ///< at the place of each RoomSurface
@@ -115,15 +115,15 @@ struct WorstPatch {
   double expected = 0;  ///< of the row sum: 1 - lost
 };
 
-/// What is known of the form factors.
+/// Facts of the form factors.
 struct FormFactorFacts {
-  std::optional<AssemblyCounts> counts;   ///< nothing with rows on demand
-  std::optional<double> rays_per_second;  ///< shadow rays over the seconds of the form factors, where these took any
-  double bare_rays_per_second = 0;        ///< the rate without anything else; 0 where not known
-  std::optional<SamplingFacts> sampling;  ///< nothing when no pair was sampled again
-  std::uint64_t lost_share_rays = 0;      ///< in all
-  std::optional<double> ray_error;  ///< of rows of rays: what Simulation::ray_standard_error is of the reflected light
-  std::string closure;              ///< the method that has closed the rows
+  std::optional<AssemblyCounts> counts;    ///< nothing with rows on demand
+  std::optional<double> rays_per_second;   ///< shadow rays over the seconds of the form factors, where these took any
+  double bare_rays_per_second = 0;         ///< the rate without anything else; 0 where not known
+  std::optional<SamplingFacts> sampling;   ///< nothing when no pair was sampled again
+  std::uint64_t lost_share_rays = 0;       ///< in all
+  std::optional<double> ray_error;         ///< Simulation::ray_standard_error over the reflected light; of rows of rays
+  std::string closure;                     ///< the method that has closed the rows
   std::optional<RowSumFacts> raw_row_sum;  ///< before closure; nothing with rows on demand
   std::optional<RowSumFacts> row_sum;      ///< after closure; nothing with rows on demand
   std::vector<WorstPatch> worst;           ///< the five with the largest defect times area
@@ -142,7 +142,7 @@ struct SolutionFacts {
   bool unfinished = false;         ///< Simulation::unfinished
 };
 
-/// All that is told of a run. Text, JSON and whatever else prints a run take their numbers from here.
+/// All facts of a run. Text, JSON and whatever else prints a run take their numbers from here.
 struct Report {
   SceneFacts scene;
   Request request;
@@ -163,7 +163,7 @@ struct Report {
   std::vector<StageCost> costs;
 };
 
-/// What the sensors of groups read, told of a scene.
+/// The readings of groups of sensors as facts.
 SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& readings, Diagnostics warnings);
 
 /// Works out the report of a run; costs are those noted so far. O(patches log patches).

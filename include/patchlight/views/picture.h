@@ -10,21 +10,21 @@
 
 namespace patchlight {
 
-/// What the colours of a picture tell.
+/// The meaning of the colors of a picture.
 enum class PictureColors : std::uint8_t {
-  natural,   ///< how it looks, exposed for what it shows
-  luminance  ///< false colours from 0 to a round number of cd/m^2
+  natural,   ///< as it looks, exposed for its own light
+  luminance  ///< false colors from 0 to a round number of cd/m^2
 };
 
 /// Where the light of a picture comes from.
 enum class PictureQuality : std::uint8_t {
   draft,  ///< the smoothed solution
-  final   ///< what each point gets: straight from lights by shadow rays, and what patches reflect by a final gather
+  final   ///< the light of each point: straight from lights by shadow rays, and reflected by a final gather
 };
 
 /// How a picture is taken.
 struct PictureOptions {
-  std::optional<Camera> camera = {};  ///< in metres; none: a view that shows most of the scene
+  std::optional<Camera> camera = {};  ///< in meters; none: a view that shows most of the scene
   PictureColors colors = PictureColors::natural;
   int width = 800;   ///< pixels
   int height = 800;  ///< pixels
@@ -37,10 +37,10 @@ struct PictureOptions {
 /// A picture of a solved scene.
 struct Picture {
   DisplayImage image;
-  std::optional<double> brightest = {};      ///< where false colours end, cd/m^2; nothing for natural colours
-  Image radiance = {};                       ///< what it shows, W/(m^2 sr)
-  double exposure = 1;                       ///< of natural colours: display values are this times the radiance
-  Camera camera = {};                        ///< that it was taken with, metres
+  std::optional<double> brightest = {};      ///< where false colors end, cd/m^2; nothing for natural colors
+  Image radiance = {};                       ///< of its pixels, W/(m^2 sr)
+  double exposure = 1;                       ///< of natural colors: display values are this times the radiance
+  Camera camera = {};                        ///< that it was taken with, meters
   bool unfinished = false;                   ///< stopped by the observer: a final picture with larger errors
   std::optional<double> reached_error = {};  ///< of a final picture: root mean square over its pixels of their errors,
                                              ///< each relative as PictureOptions::error is
@@ -51,26 +51,24 @@ struct Picture {
 Field display_radiance(const Simulation& simulation);
 
 /// Scale that maps radiance to display values, as Picture::exposure, for the patches of a solved scene: by its area,
-/// nine tenths of what sends out light stay below 0.7 of the display's white. By day what counts is
-/// Simulation::enclosed, as long as some of it is lit: outside, all is so much brighter.
+/// nine tenths of the lit surfaces stay below 0.7 of the display's white. By day only Simulation::enclosed counts, as
+/// long as some of it is lit: outside, all is so much brighter.
 double exposure_of(const Simulation& simulation);
 
-/// A picture of a solved scene. `simulation` comes from simulate(). A final one
-/// that the observer stops is what is there by then; before there is anything, Cancelled is thrown. \throws Cancelled;
-/// InputError for a camera that is none.
+/// A picture of a solved scene. `simulation` comes from simulate(). When the observer stops a final picture, it stays
+/// unfinished. \throws Cancelled before there is anything; InputError for a camera that is none.
 Picture take_picture(const Simulation& simulation, const PictureOptions& options = {}, const Observer& observer = {});
 
 /// A picture of a model as it is, without light: each point as bright as its reflectance times its ambient occlusion
-/// (SolvedSurface::ambient_occlusion) within a distance in metres. Of the options camera, width and height count.
+/// (SolvedSurface::ambient_occlusion) within a distance in meters. Of the options camera, width and height count.
 /// \throws InputError for a camera that is none.
 Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance);
 
 /// How a lightmap is baked.
 struct LightmapOptions {
-  std::optional<double> texel =
-      {};  ///< edge of its texels in metres, larger where a map of 4096 x 4096 cannot hold them;
-           ///< none: the smallest for which the map has 256 x 256
-           ///< texels, or more where a scene has many groups of coplanar faces
+  /// Edge of its texels in meters, larger where a map of 4096 x 4096 cannot hold them. None: the smallest for which the
+  /// map has 256 x 256 texels, or more where a scene has many groups of coplanar faces.
+  std::optional<double> texel = {};
 };
 
 /// The light on all surfaces of a solved scene but clear ones, for engines that show it in real time: gathered at each

@@ -11,13 +11,13 @@
 
 namespace patchlight {
 
-/// What the sensors of a solved scene read.
+/// The readings of sensors in a solved scene.
 struct SensorView {
   Readings readings;
   Diagnostics warnings;  ///< a sentence for each sensor whose place is in doubt
 };
 
-/// What the sensors of a solved scene read at their places: light gathered from its patches, and straight from
+/// Reads the sensors of a solved scene at their places: light gathered from its patches, and straight from
 /// luminaires, sun and sky. `simulation` comes from simulate(). \throws Cancelled.
 SensorView read_sensors(const Simulation& simulation, const Observer& observer = {});
 
@@ -38,23 +38,23 @@ struct SolvedSurface {
   Eigen::VectorXd ambient_occlusion_at_vertices = {};  ///< smoothed
 };
 
-/// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in metres finds its
+/// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in meters finds its
 /// ambient occlusion. `simulation` comes from simulate().
 SolvedSurface surface_of(const Simulation& simulation, const std::optional<double>& ambient_distance = {});
 
-/// What someone sees who stands at a camera's eye and looks at its target.
+/// The light for an observer at a camera's eye who looks at its target.
 struct ObserverReading {
   std::string name;                    ///< the camera's
   double vertical_illuminance = 0;     ///< at the eye, on the plane across the line of sight, lx
   double cylindrical_illuminance = 0;  ///< the mean on all upright planes at the eye, lx
-  double background_luminance = 0;     ///< of CIE 117: what all but the sources of glare gives that plane, over pi
-  double glare_solid_angle = 0;        ///< of those sources, sr
+  double background_luminance = 0;  ///< of CIE 117: irradiance of that plane by all but the sources of glare, over pi
+  double glare_solid_angle = 0;     ///< of those sources, sr
   std::optional<double> unified_glare_rating = {};  ///< CIE 117:1995; nothing without sources or background
 };
 
-/// What observers read in a solved scene. Windows, and what is brighter than 500 cd/m^2 and four times the mean of the
-/// half space that is seen, glares, and so do measured luminaires by the sides of their luminous openings, with I / A_p
-/// as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
+/// The readings of observers in a solved scene. Windows, and things brighter than 500 cd/m^2 and four times the mean of
+/// the half space that is seen, glare, and so do measured luminaires by the sides of their luminous openings, with I /
+/// A_p as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
                                             const Observer& observer = {});
 

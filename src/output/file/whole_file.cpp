@@ -1,7 +1,5 @@
 #include "output/file/whole_file.h"
 
-#include "patchlight/base/error.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -13,8 +11,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -27,14 +23,7 @@ namespace {
 // The prefix of the names of all temporary files and folders.
 constexpr std::string_view temporary_prefix = ".patchlight-";
 
-// So many names are tried before it is an error that they are all taken.
-constexpr int most_tries = 1000;
-
-}  // namespace
-
 namespace fs = std::filesystem;
-
-namespace {
 
 // A name beside `file` that no other process and no other call uses. The extension stays, as writers look at it.
 fs::path temporary_beside(const fs::path& file) {
@@ -42,25 +31,6 @@ fs::path temporary_beside(const fs::path& file) {
   const std::string name = std::string(temporary_prefix) + std::to_string(getpid()) + "-" + std::to_string(calls++);
   return file.parent_path() / (name + file.extension().string());
 }
-
-}  // namespace
-
-fs::path followed(const fs::path& file) {
-  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
-  // Link by link: the last may name a file that is not there yet.
-  constexpr int most_links = 40;  // as Linux follows
-  fs::path target = fs::absolute(file);
-  std::error_code error;
-  for (int k = 0; k < most_links; ++k) {
-    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
-    const fs::path next = fs::read_symlink(target, error);
-    if (error) break;
-    target = target.parent_path() / next;
-  }
-  throw OutputError(file.string(), "is a link that leads nowhere: too many links follow one another");
-}
-
-namespace {
 
 // The same error for a user who does not know of the temporary folder: its path is replaced by `known`.
 OutputError renamed(const OutputError& error, const fs::path& temporary, const fs::path& known) {
@@ -71,7 +41,7 @@ OutputError renamed(const OutputError& error, const fs::path& temporary, const f
   return {known.string() + rest.substr(0, colon), rest.substr(std::min(rest.size(), colon + 2))};
 }
 
-// Throws OutputError that tells the meaning of the system's error number.
+// Throws OutputError with the meaning of the system's error number.
 void fail_writing(const fs::path& file, const std::string& message, int error_number) {
   throw OutputError(file.string(), message + ": " + std::strerror(error_number));
 }
@@ -85,23 +55,6 @@ void flush_to_disk(const fs::path& path, const fs::path& file) {
   close(descriptor);
   if (error_number != 0) fail_writing(file, "cannot be written to disk", error_number);
 }
-
-// A new folder beside `target`, locked as long as this lives: an unlocked one was left by a run that was killed.
-// Whatever bears its name at the end is removed.
-class PartialFolder {
- public:
-  // `known` is the name that the user knows. \throws OutputError.
-  PartialFolder(const std::filesystem::path& target, const std::filesystem::path& known);
-  ~PartialFolder();
-  PartialFolder(const PartialFolder&) = delete;
-  PartialFolder& operator=(const PartialFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-  int descriptor_ = -1;
-};
 
 constexpr const char* partial_extension = ".partial";
 
@@ -118,33 +71,6 @@ void remove_if_left(const fs::path& path) {
   close(descriptor);
 }
 
-PartialFolder::PartialFolder(const fs::path& target, const fs::path& known) {
-  // A name that is taken is another program's.
-  for (int tries = 0; descriptor_ < 0; ++tries) {
-    path_ = temporary_beside(target).replace_extension(partial_extension);
-    if (mkdir(path_.c_str(), 0777) != 0) {
-      if (errno == EEXIST && tries < most_tries) continue;
-      fail_writing(known, "cannot write into the folder above it", errno);
-    }
-    descriptor_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    if (descriptor_ < 0) fail_writing(known, "cannot write into the folder above it", errno);
-    // Some file systems know no locks; then nobody can take the folder for a left one either. Another run may have done
-    // so before it was locked.
-    flock(descriptor_, LOCK_EX);
-    struct stat status {};
-    if (fstat(descriptor_, &status) == 0 && status.st_nlink == 0) {
-      close(descriptor_);
-      descriptor_ = -1;
-    }
-  }
-}
-
-PartialFolder::~PartialFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-  close(descriptor_);
-}
-
 // Removes temporary files and folders of killed runs from a folder. One whose lock can be had belongs to nobody.
 void remove_left(const fs::path& folder) {
   std::error_code ignored;
@@ -153,35 +79,42 @@ void remove_left(const fs::path& folder) {
   }
 }
 
-// An empty file, locked as long as this lives: an unlocked one was left by a run that was killed. Gone at the end,
-// unless it was renamed.
-class TemporaryFile {
+enum class Kind { file, folder };
+
+// An empty file or folder beside `target`, locked as long as this lives: an unlocked one was left by a run that was
+// killed. Gone at the end, unless it was renamed.
+class Temporary {
  public:
-  /// `file` is the name that the user knows, for the message.
-  TemporaryFile(const fs::path& target, const fs::path& file) {
+  // `known` is the name that the user knows. \throws OutputError.
+  Temporary(const fs::path& target, const fs::path& known, Kind kind) {
+    const bool is_folder = kind == Kind::folder;
+    const int flags = O_CLOEXEC | (is_folder ? O_RDONLY | O_DIRECTORY | O_NOFOLLOW : O_WRONLY | O_CREAT | O_EXCL);
     for (int tries = 0; !is_locked(); ++tries) {
       path_ = temporary_beside(target);
-      descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (is_folder) path_.replace_extension(partial_extension);
+      if (!is_folder || mkdir(path_.c_str(), 0777) == 0) descriptor_ = open(path_.c_str(), flags, 0666);
       // A name that is taken is another program's.
-      const bool is_taken = descriptor_ < 0 && errno == EEXIST && tries < most_tries;
-      if (descriptor_ < 0 && !is_taken) fail_writing(file, "cannot write into this folder", errno);
+      const bool is_taken = descriptor_ < 0 && errno == EEXIST && tries < 1000;
+      if (descriptor_ < 0 && !is_taken)
+        fail_writing(known, is_folder ? "cannot write into the folder above it" : "cannot write into this folder",
+                     errno);
     }
   }
-  ~TemporaryFile() {
+  ~Temporary() {
     std::error_code ignored;
-    fs::remove(path_, ignored);
+    fs::remove_all(path_, ignored);
     close(descriptor_);
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
 
   const fs::path& path() const { return path_; }
 
  private:
-  // False when another run took the file for a left one before it was locked.
+  // False when another run took it for a left one before it was locked. Some file systems have no locks; then no run
+  // can take it for a left one either.
   bool is_locked() {
     if (descriptor_ < 0) return false;
-    // Some file systems know no locks; then nobody can take the file for a left one either.
     flock(descriptor_, LOCK_EX);
     struct stat status {};
     if (fstat(descriptor_, &status) != 0 || status.st_nlink > 0) return true;
@@ -209,16 +142,13 @@ void check_target(const fs::path& file, const fs::path& target) {
   if (access(target.c_str(), W_OK) != 0) fail_writing(file, "exists and cannot be replaced", errno);
 }
 
-// Keeps other runs from renaming at the same time, so that the files of one folder are those of one run. Who cannot
-// have the lock in time goes on without: somebody else may hold it for reasons of his own.
+// Keeps other runs from renaming at the same time, so that the files of one folder are those of one run. After two
+// seconds a run goes on without the lock: another program may hold it.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    constexpr int most_waits = 200;
-    constexpr auto wait = std::chrono::milliseconds(10);
-    for (int k = 0; k < most_waits && flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++k) {
-      std::this_thread::sleep_for(wait);
-    }
+    for (int k = 0; k < 200 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   ~FolderLock() {
     if (descriptor_ >= 0) close(descriptor_);
@@ -230,14 +160,58 @@ class FolderLock {
   int descriptor_;
 };
 
+// The folder itself, absolute, without a slash at its end.
+fs::path folder_path(const fs::path& folder) {
+  const fs::path path = followed(folder).lexically_normal();
+  return path.filename().empty() ? path.parent_path() : path;
+}
+
+void check_target(const fs::path& folder, const fs::path& target, const MayReplace& may_replace) {
+  if (!fs::is_directory(target.parent_path())) {
+    throw OutputError(folder.string(), "there is no folder " + target.parent_path().string() + "; create it first");
+  }
+  if (!fs::exists(target)) return;
+  if (!fs::is_directory(target)) throw OutputError(folder.string(), "is a file; expected the name of a folder");
+  if (!fs::is_empty(target) && !may_replace(target)) {
+    throw OutputError(folder.string(),
+                      "holds other files than an earlier result; give the name of a new folder, or empty it first");
+  }
+}
+
+// Afterwards the new folder bears the name, and the old one, if any, that of the new.
+void swap_folders(const fs::path& fresh, const fs::path& target, const fs::path& folder) {
+  // An empty folder, or none, is replaced at once.
+  if (rename(fresh.c_str(), target.c_str()) == 0) return;
+  if (renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return;
+  // Some file systems cannot exchange: then for a moment there is neither.
+  const fs::path old = temporary_beside(target).replace_extension(fresh.extension());
+  if (rename(target.c_str(), old.c_str()) != 0) fail_writing(folder, "cannot be replaced", errno);
+  fs::rename(fresh, target);
+  fs::remove_all(old);
+}
+
 }  // namespace
+
+fs::path followed(const fs::path& file) {
+  if (file.empty()) throw OutputError("output", "the name of the file to write is empty");
+  // Link by link, as many as Linux follows: the last may name a file that is not there yet.
+  fs::path target = fs::absolute(file);
+  std::error_code error;
+  for (int k = 0; k < 40; ++k) {
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) break;
+    target = target.parent_path() / next;
+  }
+  throw OutputError(file.string(), "is a link that leads nowhere: too many links follow one another");
+}
 
 void check_writable(const fs::path& file) {
   try {
     const fs::path target = followed(file);
     check_target(file, target);
     // Only trying tells: permissions, read-only and full file systems.
-    const TemporaryFile trial(target, file);
+    const Temporary trial(target, file, Kind::file);
     remove_left(target.parent_path());
   } catch (const fs::filesystem_error& error) {
     throw OutputError(file.string(), error.code().message());
@@ -248,7 +222,7 @@ void write_whole_file(const fs::path& file, const std::function<void(const fs::p
   try {
     const fs::path target = followed(file);
     check_target(file, target);
-    const TemporaryFile temporary(target, file);
+    const Temporary temporary(target, file, Kind::file);
     write(temporary.path());
     if (fs::file_size(temporary.path()) == 0) throw OutputError(file.string(), "nothing was written");
     if (fs::exists(target)) fs::permissions(temporary.path(), fs::status(target).permissions());
@@ -263,7 +237,7 @@ void write_whole_file(const fs::path& file, const std::function<void(const fs::p
 
 // The targets of one folder, and the temporary folder beside them.
 struct WholeFiles::Folder {
-  PartialFolder temporary;
+  Temporary temporary;
   std::vector<fs::path> targets;
 };
 
@@ -276,7 +250,7 @@ void WholeFiles::write(const fs::path& file, const std::function<void(const fs::
     const fs::path target = followed(file);
     check_target(file, target);
     std::unique_ptr<Folder>& folder = folders_[fs::canonical(target.parent_path())];
-    if (!folder) folder.reset(new Folder{{target, file}, {}});
+    if (!folder) folder.reset(new Folder{{target, file, Kind::folder}, {}});
     const fs::path temporary = folder->temporary.path() / target.filename();
     try {
       write(temporary);
@@ -312,45 +286,11 @@ void WholeFiles::publish() {
   folders_.clear();
 }
 
-namespace {
-
-// The folder itself, absolute, without a slash at its end.
-fs::path folder_path(const fs::path& folder) {
-  const fs::path path = followed(folder).lexically_normal();
-  return path.filename().empty() ? path.parent_path() : path;
-}
-
-void check_target(const fs::path& folder, const fs::path& target, const MayReplace& may_replace) {
-  if (!fs::is_directory(target.parent_path())) {
-    throw OutputError(folder.string(), "there is no folder " + target.parent_path().string() + "; create it first");
-  }
-  if (!fs::exists(target)) return;
-  if (!fs::is_directory(target)) throw OutputError(folder.string(), "is a file; expected the name of a folder");
-  if (!fs::is_empty(target) && !may_replace(target)) {
-    throw OutputError(folder.string(),
-                      "holds other files than an earlier result; give the name of a new folder, or empty it first");
-  }
-}
-
-// Afterwards the new folder bears the name, and the old one, if any, that of the new.
-void swap_folders(const fs::path& fresh, const fs::path& target, const fs::path& folder) {
-  // An empty folder, or none, is replaced at once.
-  if (rename(fresh.c_str(), target.c_str()) == 0) return;
-  if (renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return;
-  // Some file systems cannot exchange: then for a moment there is neither.
-  const fs::path old = temporary_beside(target).replace_extension(fresh.extension());
-  if (rename(target.c_str(), old.c_str()) != 0) fail_writing(folder, "cannot be replaced", errno);
-  fs::rename(fresh, target);
-  fs::remove_all(old);
-}
-
-}  // namespace
-
 void check_folder_writable(const fs::path& folder, const MayReplace& may_replace) {
   try {
     const fs::path target = folder_path(folder);
     check_target(folder, target, may_replace);
-    const PartialFolder trial(target, folder);
+    const Temporary trial(target, folder, Kind::folder);
     remove_left(target.parent_path());
   } catch (const fs::filesystem_error& error) {
     throw OutputError(folder.string(), error.code().message());
@@ -372,7 +312,7 @@ void write_whole_folder(const fs::path& folder, const MayReplace& may_replace,
   try {
     const fs::path target = folder_path(folder);
     check_target(folder, target, may_replace);
-    const PartialFolder temporary(target, folder);
+    const Temporary temporary(target, folder, Kind::folder);
     try {
       write(temporary.path());
     } catch (const OutputError& error) {
@@ -394,6 +334,17 @@ void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
     stream.close();
     if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
   });
+}
+
+std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> words) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char letter : text) {
+    const auto* const found =
+        std::find_if(words.begin(), words.end(), [letter](const auto& word) { return word.first == letter; });
+    found == words.end() ? out.append(1, letter) : out.append(found->second);
+  }
+  return out;
 }
 
 std::string csv_cell(const std::string& name) {

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
@@ -26,7 +28,7 @@ void write_whole_file(const std::filesystem::path& file,
 void check_writable(const std::filesystem::path& file);
 
 /// Files that appear together: all are written into temporary folders beside their places before the first is renamed.
-/// What is not published is gone at the end. A run that is killed between the first rename and the last, which follow
+/// Unpublished files are gone at the end. A run that is killed between the first rename and the last, which follow
 /// one another at once, leaves new files and old ones, each of them whole.
 class WholeFiles {
  public:
@@ -53,7 +55,7 @@ using MayReplace = std::function<bool(const std::filesystem::path& folder)>;
 /// A result that has a folder of its own.
 struct FolderResult {
   std::string facts_file;          ///< JSON
-  std::string kind;                ///< what stands in it as "kind"
+  std::string kind;                ///< its entry "kind"
   std::vector<std::string> names;  ///< of all that may be there
 };
 
@@ -62,15 +64,18 @@ bool holds_result(const std::filesystem::path& folder, const FolderResult& resul
 
 /// Lets `write` fill a temporary folder beside `folder` and renames it to `folder`: whoever looks sees the old folder
 /// or the whole new one. When `write` throws, the temporary folder is removed and `folder` stays as it was. \throws
-/// OutputError when the place is not writable, or `folder` is a file or holds what may not be replaced.
+/// OutputError when the place is not writable, or `folder` is a file or holds files that may not be replaced.
 void write_whole_folder(const std::filesystem::path& folder, const MayReplace& may_replace,
                         const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// Fails early: \throws OutputError when write_whole_folder could not write here. Removes what killed runs have left.
+/// Fails early: \throws OutputError when write_whole_folder could not write here. Removes leftovers of killed runs.
 void check_folder_writable(const std::filesystem::path& folder, const MayReplace& may_replace);
 
 /// Writes `bytes` as a whole file, see write_whole_file(). \throws OutputError.
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
+
+/// The text with words in place of some letters.
+std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> words);
 
 /// A name as a cell of a CSV file (RFC 4180): in quotes where a comma, a quote or a line break would end it early.
 /// Before a first letter that makes spreadsheets take a cell for a formula (= + - @, tab, line break) stands an

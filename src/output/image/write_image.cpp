@@ -2,11 +2,9 @@
 #include "output/image/write_image.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/provenance.h"
-#include "patchlight/output/write_image.h"
-#include "patchlight/views/picture.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 #include "render/tone_map.h"
@@ -22,12 +20,8 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
 #include <numbers>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 #include <vtkAutoInit.h>
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
@@ -54,12 +48,11 @@ DisplayImage black_image(int width, int height) {
   return {width, height, std::vector<Colour>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
 }
 
-// `below` with `above` laid over it, its upper left corner at (left, top); what sticks out is cut off.
+// `below` with `above` laid over it, its upper left corner at (left, top), and cut off at the edges.
 DisplayImage laid_over(DisplayImage below, DisplayImage above, int left, int top) {
   for (int y = std::max(0, -top); y < std::min(above.height, below.height - top); ++y) {
-    for (int x = std::max(0, -left); x < std::min(above.width, below.width - left); ++x) {
+    for (int x = std::max(0, -left); x < std::min(above.width, below.width - left); ++x)
       pixel(below, left + x, top + y) = pixel(above, x, y);
-    }
   }
   return below;
 }
@@ -72,10 +65,10 @@ DisplayImage text_image(const std::string& text, int font_size) {
   style->SetColor(1, 1, 1);
   vtkNew<vtkImageData> drawn;
   int size[2] = {0, 0};
-  constexpr int dots_per_inch = 72;  // one point is one pixel
   vtkFreeTypeTools* const free_type = vtkFreeTypeTools::GetInstance();
   free_type->ScaleToPowerTwoOff();
-  if (!free_type->RenderString(style, text, dots_per_inch, drawn, size)) return {};
+  // At 72 dots per inch one point is one pixel.
+  if (!free_type->RenderString(style, text, 72, drawn, size)) return {};
 
   // VTK's rows go upward; four channels, the last is the coverage.
   DisplayImage image = black_image(size[0], size[1]);
@@ -102,7 +95,7 @@ std::string short_number(double value) {
   return {text.data(), end};
 }
 
-// A column of false colours, the upper value at the top.
+// A column of false colors, the upper value at the top.
 DisplayImage colour_bar(int width, int height) {
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(height, 1, 0);
   const std::vector<Colour> colours = false_color(values, 0, 1);
@@ -112,68 +105,6 @@ DisplayImage colour_bar(int width, int height) {
   }
   return bar;
 }
-
-}  // namespace
-
-std::string png_bytes(const DisplayImage& image, const std::vector<PngText>& texts) {
-  vtkNew<vtkImageData> data;
-  data->SetDimensions(image.width, image.height, 1);
-  data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  // VTK's rows go upward.
-  for (int y = 0; y < image.height; ++y) {
-    const auto row = std::span(image.pixels)
-                         .subspan(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width),
-                                  static_cast<std::size_t>(image.width));
-    auto* out = static_cast<std::uint8_t*>(data->GetScalarPointer(0, image.height - 1 - y, 0));
-    for (const Colour& colour : row) out = std::copy(colour.begin(), colour.end(), out);
-  }
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(data);
-  writer->WriteToMemoryOn();
-  for (const PngText& text : texts) writer->AddText(text.keyword.c_str(), text.text.c_str());
-  writer->Write();
-  vtkUnsignedCharArray* const encoded = writer->GetResult();
-  if (writer->GetErrorCode() != 0 || encoded == nullptr) return {};
-  return {reinterpret_cast<const char*>(encoded->GetPointer(0)),
-          static_cast<std::size_t>(encoded->GetNumberOfValues())};
-}
-
-void write_png(const std::filesystem::path& file, const DisplayImage& image, const std::vector<PngText>& texts) {
-  const std::string bytes = png_bytes(image, texts);
-  if (bytes.empty()) throw OutputError(file.string(), "the picture cannot be encoded as PNG");
-  write_bytes(file, bytes);
-}
-
-DisplayImage with_legend(const DisplayImage& image, double lower, double upper, const std::string& title) {
-  const int font_size = std::max(9, image.height / 45);
-  std::vector<DisplayImage> numbers;
-  const DisplayImage heading = text_image(title, font_size);
-  const int gap = font_size;
-  int text_width = 0;
-  for (int k = 0; k < legend_numbers; ++k) {
-    const double part = static_cast<double>(k) / (legend_numbers - 1);
-    numbers.push_back(text_image(short_number((1 - part) * upper + part * lower), font_size));
-    text_width = std::max(text_width, numbers.back().width);
-  }
-  const int bar_width = 2 * font_size;
-  const int width = 2 * gap + std::max(bar_width + gap / 2 + text_width, heading.width);
-  const int bar_top = 3 * gap + heading.height / 2;
-  const int bar_height = std::max(1, image.height - bar_top - 2 * gap);
-
-  DisplayImage whole = laid_over(black_image(image.width + width, image.height), image, 0, 0);
-  const int left = image.width + gap;
-  whole = laid_over(std::move(whole), heading, left, gap);
-  whole = laid_over(std::move(whole), colour_bar(bar_width, bar_height), left, bar_top);
-  for (int k = 0; k < legend_numbers; ++k) {
-    // Each number is centred at its height on the bar.
-    const int middle = bar_top + k * (bar_height - 1) / (legend_numbers - 1);
-    const DisplayImage& number = numbers[static_cast<std::size_t>(k)];
-    whole = laid_over(std::move(whole), number, left + bar_width + gap / 2, middle - number.height / 2);
-  }
-  return whole;
-}
-
-namespace {
 
 std::vector<ExrChannel> channels_of(const Picture& picture, const Bands& bands) {
   const Image& image = picture.radiance;
@@ -212,7 +143,7 @@ void write_channels(const std::filesystem::path& file, Imf::Header header, const
   Imf::FrameBuffer pixels;
   const auto add = [&](const std::string& name, Imf::PixelType type, const void* values) {
     header.channels().insert(name, Imf::Channel(type));
-    // What is written is only read.
+    // OpenEXR only reads the values.
     pixels.insert(name, Imf::Slice(type, static_cast<char*>(const_cast<void*>(values)), 4, 4 * width));
   };
   for (const ExrChannel& channel : channels) add(channel.name, Imf::FLOAT, channel.values.data());
@@ -224,7 +155,7 @@ void write_channels(const std::filesystem::path& file, Imf::Header header, const
   });
 }
 
-// What OpenEXR refuses, in words of ours.
+// Errors of OpenEXR as OutputError.
 template <class Write>
 void in_our_words(const std::filesystem::path& file, const Write& write) {
   try {
@@ -236,33 +167,7 @@ void in_our_words(const std::filesystem::path& file, const Write& write) {
   }
 }
 
-}  // namespace
-
-void write_exr(const std::filesystem::path& file, int width, int height, const std::vector<ExrChannel>& channels,
-               const std::string& comment) {
-  in_our_words(file, [&] {
-    Imf::Header header(width, height);
-    if (!comment.empty()) header.insert("comments", Imf::StringAttribute(comment));
-    write_channels(file, std::move(header), channels, {});
-  });
-}
-
-void write_exr(const std::filesystem::path& file, const Picture& picture, const Bands& bands) {
-  const Image& image = picture.radiance;
-  in_our_words(file, [&] {
-    Imf::Header header(image.width, image.height);
-    if (picture.unfinished) header.insert("comments", Imf::StringAttribute("unfinished"));
-    write_channels(file, std::move(header), channels_of(picture, bands), {image.patch.begin(), image.patch.end()});
-  });
-}
-
-namespace {
-
 using SharedExponent = std::array<std::uint8_t, 4>;  // red, green, blue, exponent
-
-// Scanlines of other widths are not run-length encoded.
-constexpr int least_width = 8;
-constexpr int most_width = 32767;
 
 // Each mantissa m stands for (m + 1/2) 2^(e - 136): readers disagree on the half, which is below a mantissa's step.
 SharedExponent shared_exponent(const std::array<double, 3>& rgb) {
@@ -322,7 +227,7 @@ std::string view_line(const Camera& camera, const Vector& up, const Image& image
   const double aspect = static_cast<double>(image.width) / image.height;
   const double vertical = camera.projection == Projection::orthographic ? camera.height : camera.vertical_field_of_view;
   const Vector sight = (camera.target - camera.eye).normalized();
-  const Vector upward = sight.cross(up).norm() > 1e-9 ? up : sight.cross(sight.unitOrthogonal());
+  const Vector upward = sight.cross(up).norm() > tolerance_of_shapes ? up : sight.cross(sight.unitOrthogonal());
   return std::string("VIEW= -vt") + type + " -vp " + numbers_of(camera.eye) + " -vd " + numbers_of(sight) + " -vu " +
          numbers_of(upward) + " -vh " + shortest(horizontal(camera, aspect)) + " -vv " + shortest(vertical) +
          " -vs 0 -vl 0\n";
@@ -338,7 +243,8 @@ void write_hdr(const std::filesystem::path& file, const Picture& picture, const 
   if (picture.unfinished) bytes += "COMMENT= unfinished\n";
   bytes += "PRIMARIES= .64 .33 .3 .6 .15 .06 .3127 .329\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n";
   bytes += "-Y " + std::to_string(image.height) + " +X " + std::to_string(image.width) + '\n';
-  const bool has_runs = image.width >= least_width && image.width <= most_width;
+  // Scanlines of other widths are not run-length encoded.
+  const bool has_runs = image.width >= 8 && image.width <= 32767;
   std::vector<SharedExponent> line(static_cast<std::size_t>(image.width));
   for (Eigen::Index y = 0; y < image.height; ++y) {
     for (Eigen::Index x = 0; x < image.width; ++x)
@@ -355,14 +261,87 @@ void write_hdr(const std::filesystem::path& file, const Picture& picture, const 
 
 // The error map ends where all but one in twenty of the pixels lie below.
 double end_of_errors(const Eigen::VectorXd& errors) {
-  std::vector<double> sorted(errors.begin(), errors.end());
-  if (sorted.empty()) return 1;
-  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), end, sorted.end());
-  return *end > 0 ? *end : 1;
+  const double end = errors.size() == 0 ? 0 : quantile({errors.begin(), errors.end()}, 0.95);
+  return end > 0 ? end : 1;
 }
 
 }  // namespace
+
+std::string png_bytes(const DisplayImage& image, const std::vector<PngText>& texts) {
+  vtkNew<vtkImageData> data;
+  data->SetDimensions(image.width, image.height, 1);
+  data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+  // VTK's rows go upward.
+  for (int y = 0; y < image.height; ++y) {
+    const auto row = std::span(image.pixels)
+                         .subspan(static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width),
+                                  static_cast<std::size_t>(image.width));
+    auto* out = static_cast<std::uint8_t*>(data->GetScalarPointer(0, image.height - 1 - y, 0));
+    for (const Colour& colour : row) out = std::copy(colour.begin(), colour.end(), out);
+  }
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(data);
+  writer->WriteToMemoryOn();
+  for (const PngText& text : texts) writer->AddText(text.keyword.c_str(), text.text.c_str());
+  writer->Write();
+  vtkUnsignedCharArray* const encoded = writer->GetResult();
+  if (writer->GetErrorCode() != 0 || encoded == nullptr) return {};
+  return {reinterpret_cast<const char*>(encoded->GetPointer(0)),
+          static_cast<std::size_t>(encoded->GetNumberOfValues())};
+}
+
+void write_png(const std::filesystem::path& file, const DisplayImage& image, const std::vector<PngText>& texts) {
+  const std::string bytes = png_bytes(image, texts);
+  if (bytes.empty()) throw OutputError(file.string(), "the picture cannot be encoded as PNG");
+  write_bytes(file, bytes);
+}
+
+DisplayImage with_legend(const DisplayImage& image, double lower, double upper, const std::string& title) {
+  const int font_size = std::max(9, image.height / 45);
+  std::vector<DisplayImage> numbers;
+  const DisplayImage heading = text_image(title, font_size);
+  const int gap = font_size;
+  int text_width = 0;
+  for (int k = 0; k < legend_numbers; ++k) {
+    const double part = static_cast<double>(k) / (legend_numbers - 1);
+    numbers.push_back(text_image(short_number((1 - part) * upper + part * lower), font_size));
+    text_width = std::max(text_width, numbers.back().width);
+  }
+  const int bar_width = 2 * font_size;
+  const int width = 2 * gap + std::max(bar_width + gap / 2 + text_width, heading.width);
+  const int bar_top = 3 * gap + heading.height / 2;
+  const int bar_height = std::max(1, image.height - bar_top - 2 * gap);
+
+  DisplayImage whole = laid_over(black_image(image.width + width, image.height), image, 0, 0);
+  const int left = image.width + gap;
+  whole = laid_over(std::move(whole), heading, left, gap);
+  whole = laid_over(std::move(whole), colour_bar(bar_width, bar_height), left, bar_top);
+  for (int k = 0; k < legend_numbers; ++k) {
+    // Each number is centered at its height on the bar.
+    const int middle = bar_top + k * (bar_height - 1) / (legend_numbers - 1);
+    const DisplayImage& number = numbers[static_cast<std::size_t>(k)];
+    whole = laid_over(std::move(whole), number, left + bar_width + gap / 2, middle - number.height / 2);
+  }
+  return whole;
+}
+
+void write_exr(const std::filesystem::path& file, int width, int height, const std::vector<ExrChannel>& channels,
+               const std::string& comment) {
+  in_our_words(file, [&] {
+    Imf::Header header(width, height);
+    if (!comment.empty()) header.insert("comments", Imf::StringAttribute(comment));
+    write_channels(file, std::move(header), channels, {});
+  });
+}
+
+void write_exr(const std::filesystem::path& file, const Picture& picture, const Bands& bands) {
+  const Image& image = picture.radiance;
+  in_our_words(file, [&] {
+    Imf::Header header(image.width, image.height);
+    if (picture.unfinished) header.insert("comments", Imf::StringAttribute("unfinished"));
+    write_channels(file, std::move(header), channels_of(picture, bands), {image.patch.begin(), image.patch.end()});
+  });
+}
 
 const std::vector<std::string>& picture_extensions() {
   static const std::vector<std::string> all = {".png", ".hdr", ".exr"};

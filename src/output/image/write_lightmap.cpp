@@ -1,10 +1,8 @@
-#include "output/image/write_lightmap.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/output/provenance.h"
-#include "patchlight/output/write_image.h"
+#include "patchlight/output/write_result.h"
 #include "patchlight/render/image.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
@@ -13,7 +11,7 @@
 #include "output/image/write_image.h"
 #include "output/mesh/write_mesh.h"
 #include "output/report/report_json.h"
-#include "render/lightmap_charts.h"
+#include "render/lightmap.h"
 #include "render/tone_map.h"
 
 #include <algorithm>
@@ -30,7 +28,7 @@
 namespace patchlight {
 namespace {
 
-// A radiance of a lightmap as colours for a display, W/(m^2 sr) times the exposure, row by row: no field in double
+// A radiance of a lightmap as colors for a display, W/(m^2 sr) times the exposure, row by row: no field in double
 // precision of the whole map is made.
 DisplayImage picture_of_map(const Lightmap& map, const TexelField& radiance, double exposure, const Bands& bands) {
   DisplayImage image{map.width, map.height, {}};
@@ -141,14 +139,10 @@ class LightmapGlb {
 
 LightmapGlb::LightmapGlb(const Scene& scene, const Provenance& provenance)
     : scene_(scene), centre_(bounds(scene).center()) {
-  json_["asset"] = {{"version", "2.0"},
-                    {"generator", std::string("patchlight ") + version()},
-                    {"extras", {{"exposure", provenance.exposure}, {"command_line", provenance.command_line}}}};
-  const Vector place = y_up(centre_, scene);
+  json_["asset"] = gltf_asset(provenance);
   json_["scene"] = 0;
   json_["scenes"] = GltfJson::array({{{"nodes", GltfJson::array({0})}}});
-  json_["nodes"] =
-      GltfJson::array({{{"mesh", 0}, {"translation", GltfJson::array({place.x(), place.y(), place.z()})}}});
+  json_["nodes"] = gltf_nodes(y_up(centre_, scene));
 }
 
 std::size_t LightmapGlb::view(std::size_t begin, int target) {
@@ -258,7 +252,7 @@ bool is_clear(const Material& material) {
 }
 
 // Writes the patches as binary glTF 2.0 for engines that light them by a lightmap: the materials' reflectances as base
-// colours, normals, TEXCOORD_1 the place in the lightmap and TEXCOORD_0 that in the material's picture, or metres
+// colors, normals, TEXCOORD_1 the place in the lightmap and TEXCOORD_0 that in the material's picture, or meters
 // along the face where it has none. One-sided triangles, y up, positions as write_glb() has them. Throws OutputError.
 void write_lightmap_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                         const Lightmap& map, const Provenance& provenance) {
@@ -274,7 +268,7 @@ void write_lightmap_glb(const std::filesystem::path& file, const Scene& scene, c
   glb.write(file, "lightmap", {{"texCoord", 1}, {"file", "irradiance.exr"}, {"unit", "W/m^2"}});
 }
 
-// The same with the light itself as colours for viewers: unlit (KHR_materials_unlit), the map's radiance exposed and
+// The same with the light itself as colors for viewers: unlit (KHR_materials_unlit), the map's radiance exposed and
 // embedded as PNG, its places in TEXCOORD_0 and in TEXCOORD_1. Clear faces are drawn as thin glass. \throws
 // OutputError.
 void write_baked_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
@@ -335,7 +329,7 @@ std::vector<ExrChannel> rgb_channels(const TexelField& light, const Bands& bands
   return channels;
 }
 
-// What texels on surfaces have.
+// The light of texels on surfaces.
 Field on_surfaces(const Lightmap& map, const TexelField& light) {
   const auto count =
       static_cast<Eigen::Index>(map.patch.size()) - std::count(map.patch.begin(), map.patch.end(), no_patch);
@@ -402,10 +396,7 @@ void write_lightmap(const fs::path& folder, const Scene& scene, const Simulation
     }
     write_lightmap_glb(in / lit_file, scene, simulation, map, baked);
     write_baked_glb(in / baked_file, scene, simulation, map, baked);
-    write_bytes(in / lightmap_facts_file,
-                facts_of(map, scene, baked, exposure * std::numbers::pi)
-                        .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                    "\n");
+    write_bytes(in / lightmap_facts_file, json_text(facts_of(map, scene, baked, exposure * std::numbers::pi)));
   });
 }
 

@@ -5,13 +5,12 @@
 #include "output/file/whole_file.h"
 #include "output/report/report_json.h"
 #include "output/vtk/vtk_polygons.h"
+#include "output/vtk/write_vtk.h"
 #include "render/tone_map.h"
 
-#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
@@ -32,35 +31,6 @@ std::string padded(std::string chunk, char with) {
   chunk.resize((chunk.size() + 3) / 4 * 4, with);
   return chunk;
 }
-
-}  // namespace
-
-Vector y_up(const Vector& vector, const Scene& scene) {
-  const bool turned = std::abs(scene.up.y()) < std::abs(scene.up.z());
-  return turned ? Vector(vector.x(), vector.z(), -vector.y()) : vector;
-}
-
-void write_glb_file(const std::filesystem::path& file, const nlohmann::ordered_json& description,
-                    const std::string& buffer) {
-  // Bytes that are not UTF-8 are replaced.
-  const std::string text =
-      padded(description.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), ' ');
-  const std::string binary = padded(buffer, '\0');
-  const std::size_t header = 12, chunk_header = 8;
-  const std::size_t size = header + chunk_header + text.size() + chunk_header + binary.size();
-  if (size > std::numeric_limits<std::uint32_t>::max())
-    throw OutputError(file.string(), "needs more than the 4 GiB that a .glb can hold; expected fewer patches or .vtp");
-  std::string bytes;
-  bytes.reserve(size);
-  append_bytes(bytes, glb_magic);
-  append_bytes(bytes, std::uint32_t{2});  // version of the container
-  append_bytes(bytes, static_cast<std::uint32_t>(size));
-  append_chunk(bytes, glb_chunk_json, text);
-  append_chunk(bytes, glb_chunk_binary, binary);
-  write_bytes(file, bytes);
-}
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 using namespace gltf;
@@ -96,7 +66,7 @@ Buffer buffer_of(const SolvedSurface& surface, const Point& centre, double expos
     buffer.highest = k == 0 ? position : buffer.highest.max(position);
   }
   buffer.positions = buffer.bytes.size();
-  // Vertex colours are linear in glTF: sixteen bits keep all eight of sRGB. Opaque.
+  // Vertex colors are linear in glTF: sixteen bits keep all eight of sRGB. Opaque.
   for (const auto& colour : tone_map(surface.radiance_at_vertices, exposure, bands_of(surface.scene))) {
     for (const std::uint8_t channel : colour) append_bytes(buffer.bytes, linear(channel));
     append_bytes(buffer.bytes, std::numeric_limits<std::uint16_t>::max());
@@ -116,14 +86,11 @@ Json description(const Buffer& buffer, const Vector& translation, const Provenan
     return {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}, {"target", target}};
   };
   Json json;
-  json["asset"] = {{"version", "2.0"},
-                   {"generator", std::string("patchlight ") + version()},
-                   {"extras", {{"exposure", provenance.exposure}, {"command_line", provenance.command_line}}}};
+  json["asset"] = gltf_asset(provenance);
   json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
   json["scene"] = 0;
   json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  json["nodes"] =
-      Json::array({{{"mesh", 0}, {"translation", Json::array({translation.x(), translation.y(), translation.z()})}}});
+  json["nodes"] = gltf_nodes(translation);
   const Json primitive = {
       {"attributes", {{"POSITION", 0}, {"COLOR_0", 1}}}, {"indices", 2}, {"material", 0}, {"mode", 4}};
   json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
@@ -151,16 +118,6 @@ Json description(const Buffer& buffer, const Vector& translation, const Provenan
   return json;
 }
 
-}  // namespace
-
-void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
-  const Point centre = bounds(surface.scene).center();
-  const Buffer buffer = buffer_of(surface, centre, provenance.exposure);
-  write_glb_file(file, description(buffer, y_up(centre, surface.scene), provenance), buffer.bytes);
-}
-
-namespace {
-
 // A comment ends with its line.
 std::string one_line(std::string text) {
   for (char& letter : text) {
@@ -183,6 +140,47 @@ std::string header(const PatchMesh& mesh, const Provenance& provenance) {
 }
 
 }  // namespace
+
+Vector y_up(const Vector& vector, const Scene& scene) {
+  const bool turned = std::abs(scene.up.y()) < std::abs(scene.up.z());
+  return turned ? Vector(vector.x(), vector.z(), -vector.y()) : vector;
+}
+
+nlohmann::ordered_json gltf_asset(const Provenance& provenance) {
+  return {{"version", "2.0"},
+          {"generator", std::string("patchlight ") + version()},
+          {"extras", {{"exposure", provenance.exposure}, {"command_line", provenance.command_line}}}};
+}
+
+nlohmann::ordered_json gltf_nodes(const Vector& translation) {
+  return Json::array({{{"mesh", 0}, {"translation", json_array(translation)}}});
+}
+
+void write_glb_file(const std::filesystem::path& file, const nlohmann::ordered_json& description,
+                    const std::string& buffer) {
+  // Bytes that are not UTF-8 are replaced.
+  const std::string text =
+      padded(description.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), ' ');
+  const std::string binary = padded(buffer, '\0');
+  const std::size_t header = 12, chunk_header = 8;
+  const std::size_t size = header + chunk_header + text.size() + chunk_header + binary.size();
+  if (size > std::numeric_limits<std::uint32_t>::max())
+    throw OutputError(file.string(), "needs more than the 4 GiB that a .glb can hold; expected fewer patches or .vtp");
+  std::string bytes;
+  bytes.reserve(size);
+  append_bytes(bytes, glb_magic);
+  append_bytes(bytes, std::uint32_t{2});  // version of the container
+  append_bytes(bytes, static_cast<std::uint32_t>(size));
+  append_chunk(bytes, glb_chunk_json, text);
+  append_chunk(bytes, glb_chunk_binary, binary);
+  write_bytes(file, bytes);
+}
+
+void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const Point centre = bounds(surface.scene).center();
+  const Buffer buffer = buffer_of(surface, centre, provenance.exposure);
+  write_glb_file(file, description(buffer, y_up(centre, surface.scene), provenance), buffer.bytes);
+}
 
 void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
   const PatchMesh& mesh = surface.simulation.mesh;
@@ -224,6 +222,21 @@ void write_mesh(const std::filesystem::path& file, const Scene& scene, const Mes
   facts.AddArray(strings("object_names", scene.groups));
   facts.AddArray(strings("unit_area", {"m^2"}));
   write_polygons(file, *polygons);
+}
+
+const char* version() { return PATCHLIGHT_VERSION; }
+
+const std::vector<std::string>& result_extensions() {
+  static const std::vector<std::string> extensions = {".vtp", ".vtu", ".ply", ".glb"};
+  return extensions;
+}
+
+void write_result(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const std::string extension = file.extension().string();
+  if (extension == ".vtp" || extension == ".vtu") return write_vtk(file, surface, provenance);
+  if (extension == ".ply") return write_ply(file, surface, provenance);
+  if (extension == ".glb") return write_glb(file, surface, provenance);
+  throw OutputError(file.string(), "the extension names no known format; expected .vtp, .vtu, .ply or .glb");
 }
 
 }  // namespace patchlight

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/views/views.h"
 
@@ -10,8 +10,6 @@
 #include <array>
 #include <bit>
 #include <concepts>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -37,19 +35,23 @@ inline constexpr int linear_filter = 9729, clamp_to_edge = 33071;
 /// glTF's y points up: of a scene whose z does, (x, y, z) becomes (x, z, -y).
 Vector y_up(const Vector& vector, const Scene& scene);
 
+/// Who made a glTF, and its one node at a place.
+nlohmann::ordered_json gltf_asset(const Provenance& provenance);
+nlohmann::ordered_json gltf_nodes(const Vector& translation);
+
 /// Writes a binary glTF of a description and the one buffer that it names, padded as the format wants. \throws
 /// OutputError, also when the file would exceed the format's 4 GiB.
 void write_glb_file(const std::filesystem::path& file, const nlohmann::ordered_json& description,
                     const std::string& buffer);
 
-/// Writes the patches as a coloured surface for viewers and the web: binary glTF 2.0, unlit (KHR_materials_unlit), one
-/// sided, triangles, vertex colours of the interpolated radiance at the recorded exposure. glTF is Y up: a scene whose
-/// z points up is turned, (x, y, z) becomes (x, z, -y). Positions are floats relative to the centre of the bounds,
+/// Writes the patches as a colored surface for viewers and the web: binary glTF 2.0, unlit (KHR_materials_unlit), one
+/// sided, triangles, vertex colors of the interpolated radiance at the recorded exposure. glTF is Y up: a scene whose
+/// z points up is turned, (x, y, z) becomes (x, z, -y). Positions are floats relative to the center of the bounds,
 /// which is the node's translation. \throws OutputError, also when the file would exceed the format's 4 GiB.
 void write_glb(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
-/// Writes the patches as a coloured surface for viewers: binary little-endian PLY, positions in metres in double, per
-/// vertex the display colour (sRGB, 8 bits) of the interpolated radiance at the recorded exposure, one face per patch.
+/// Writes the patches as a colored surface for viewers: binary little-endian PLY, positions in meters in double, per
+/// vertex the display color (sRGB, 8 bits) of the interpolated radiance at the recorded exposure, one face per patch.
 /// \throws OutputError.
 void write_ply(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 

@@ -1,5 +1,7 @@
 #include "output/plot/plot_ticks.h"
 
+#include "base/tolerances.h"
+
 #include <algorithm>
 #include <array>
 #include <cairo.h>
@@ -12,12 +14,9 @@ namespace patchlight {
 namespace {
 
 constexpr double largest_shown = 1e200;
-// Against rounding: a tick that belongs to an end must not be lost.
-constexpr double slack = 1e-9;
-constexpr int few_decades = 6;
 
 // The k for which 10^k <= value < 10^(k + 1).
-int decade(double value) { return static_cast<int>(std::floor(std::log10(value) + slack)); }
+int decade(double value) { return static_cast<int>(std::floor(std::log10(value) + tolerance_of_shapes)); }
 
 double power_of_ten(double exponent) { return std::pow(10.0, exponent); }
 
@@ -25,14 +24,14 @@ double power_of_ten(double exponent) { return std::pow(10.0, exponent); }
 double nice_step(double span, int most) {
   const double power = power_of_ten(std::floor(std::log10(span / most)));
   for (const double digit : {1.0, 2.0, 5.0}) {
-    if (span <= digit * power * most * (1 + slack)) return digit * power;
+    if (span <= digit * power * most * (1 + tolerance_of_shapes)) return digit * power;
   }
   return 10 * power;
 }
 
 AxisRange linear_range(double lower, double upper, int most) {
   const double size = std::max(std::abs(lower), std::abs(upper));
-  if (upper - lower <= std::max(slack * size, 1 / largest_shown)) {
+  if (upper - lower <= std::max(tolerance_of_shapes * size, 1 / largest_shown)) {
     const double margin = size > 1 / largest_shown ? size / 2 : 1;
     lower -= margin;
     upper += margin;
@@ -40,16 +39,15 @@ AxisRange linear_range(double lower, double upper, int most) {
   // The second time the step of the wider range counts; this one has room for it.
   for (int k = 0; k < 2; ++k) {
     const double step = nice_step(upper - lower, most);
-    lower = step * std::floor(lower / step + slack);
-    upper = step * std::ceil(upper / step - slack);
+    lower = step * std::floor(lower / step + tolerance_of_shapes);
+    upper = step * std::ceil(upper / step - tolerance_of_shapes);
   }
   return {lower, upper};
 }
 
 AxisRange logarithmic_range(double lower, double upper) {
-  constexpr double margin = 0.03;
   const double span = std::log10(upper) - std::log10(lower);
-  const double wider = span > slack ? margin * span : 0.5;
+  const double wider = span > tolerance_of_shapes ? 0.03 * span : 0.5;
   return {power_of_ten(std::log10(lower) - wider), power_of_ten(std::log10(upper) + wider)};
 }
 
@@ -73,8 +71,8 @@ std::vector<Tick> linear_ticks(const AxisRange& range, int most) {
   const bool plain = largest >= 1e-3 && largest < 1e6;
   const int exponent = plain ? 0 : decade(largest);
   std::vector<Tick> ticks;
-  const double last = std::floor(range.upper / step + slack);
-  for (double k = std::ceil(range.lower / step - slack); k <= last; ++k) {
+  const double last = std::floor(range.upper / step + tolerance_of_shapes);
+  for (double k = std::ceil(range.lower / step - tolerance_of_shapes); k <= last; ++k) {
     const double value = k * step + 0.0;  // -0 becomes 0
     if (value == 0 || plain) {
       ticks.push_back({value, plain_number(value, value == 0 ? 0 : -decade(step)), ""});
@@ -99,7 +97,8 @@ std::vector<Tick> digit_ticks(const AxisRange& range) {
   for (int k = decade(range.lower); k <= decade(range.upper); ++k) {
     for (int digit = 1; digit <= 9; ++digit) {
       Tick tick = decimal_tick(digit, k);
-      if (tick.value < range.lower * (1 - slack) || tick.value > range.upper * (1 + slack)) continue;
+      if (tick.value < range.lower * (1 - tolerance_of_shapes) || tick.value > range.upper * (1 + tolerance_of_shapes))
+        continue;
       if (digit != 1 && digit != 2 && digit != 5) tick.text.clear(), tick.exponent.clear();
       ticks.push_back(tick);
     }
@@ -113,7 +112,7 @@ std::vector<Tick> decade_ticks(const AxisRange& range, int most) {
   const int count = decade(range.upper) - decade(range.lower) + 1;
   const int stride = (count + most - 1) / most;
   std::vector<Tick> ticks = digit_ticks(range);
-  if (count > few_decades) {
+  if (count > 6) {
     std::erase_if(ticks, [](const Tick& tick) { return tick.value > 1.5 * power_of_ten(decade(tick.value)); });
   }
   for (Tick& tick : ticks) {
@@ -128,6 +127,32 @@ std::vector<Tick> decade_ticks(const AxisRange& range, int most) {
 std::size_t labels(const std::vector<Tick>& ticks) {
   return static_cast<std::size_t>(
       std::count_if(ticks.begin(), ticks.end(), [](const Tick& tick) { return !tick.text.empty(); }));
+}
+
+constexpr double exponent_size = 0.75;
+
+double text_size(cairo_t* cairo) {
+  cairo_matrix_t matrix;
+  cairo_get_font_matrix(cairo, &matrix);
+  return matrix.yy;
+}
+
+std::string as_utf8(const std::string& text) {
+  using nlohmann::json;
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
+// Without the last character, which may have several bytes.
+std::string shorter(std::string text) {
+  const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
+  while (text.size() > 1 && continues(text.back())) text.pop_back();
+  text.pop_back();
+  return text;
+}
+
+double shift(double width, Align align) {
+  if (align == Align::left) return 0;
+  return align == Align::centre ? -width / 2 : -width;
 }
 
 }  // namespace
@@ -159,38 +184,12 @@ double place_on_axis(double value, const AxisRange& range, Scale scale) {
   return (std::log10(value) - lower) / (std::log10(range.upper) - lower);
 }
 
-namespace {
+void set_grey(cairo_t* cairo, double grey) { cairo_set_source_rgb(cairo, grey, grey, grey); }
 
-constexpr double exponent_size = 0.75;
-constexpr double exponent_rise = 0.45;
-// Half the height of a digit.
-constexpr double half_height = 0.36;
-
-double text_size(cairo_t* cairo) {
-  cairo_matrix_t matrix;
-  cairo_get_font_matrix(cairo, &matrix);
-  return matrix.yy;
+void add_line(cairo_t* cairo, const Pixel& from, const Pixel& to) {
+  cairo_move_to(cairo, from.x, from.y);
+  cairo_line_to(cairo, to.x, to.y);
 }
-
-std::string as_utf8(const std::string& text) {
-  using nlohmann::json;
-  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
-}
-
-// Without the last character, which may have several bytes.
-std::string shorter(std::string text) {
-  const auto continues = [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; };
-  while (text.size() > 1 && continues(text.back())) text.pop_back();
-  text.pop_back();
-  return text;
-}
-
-double shift(double width, Align align) {
-  if (align == Align::left) return 0;
-  return align == Align::centre ? -width / 2 : -width;
-}
-
-}  // namespace
 
 void set_text_size(cairo_t* cairo, double size) {
   cairo_select_font_face(cairo, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -218,7 +217,8 @@ std::string fitting_text(cairo_t* cairo, const std::string& text, double width) 
 }
 
 void draw_text(cairo_t* cairo, const Pixel& at, const std::string& text, Align align) {
-  cairo_move_to(cairo, at.x + shift(text_width(cairo, text), align), at.y + half_height * text_size(cairo));
+  // Digits are 0.72 of the size high.
+  cairo_move_to(cairo, at.x + shift(text_width(cairo, text), align), at.y + 0.36 * text_size(cairo));
   cairo_show_text(cairo, text.c_str());
   cairo_new_path(cairo);
 }
@@ -228,7 +228,7 @@ void draw_label(cairo_t* cairo, const Pixel& at, const Tick& tick, Align align) 
   draw_text(cairo, {left, at.y}, tick.text, Align::left);
   const double right = left + text_width(cairo, tick.text), size = text_size(cairo);
   cairo_set_font_size(cairo, exponent_size * size);
-  draw_text(cairo, {right, at.y - exponent_rise * size}, tick.exponent, Align::left);
+  draw_text(cairo, {right, at.y - 0.45 * size}, tick.exponent, Align::left);
   cairo_set_font_size(cairo, size);
 }
 

@@ -7,7 +7,7 @@
 
 namespace patchlight {
 
-/// What an axis shows; lower < upper, on a logarithmic axis 0 < lower.
+/// The values on an axis; lower < upper, on a logarithmic axis 0 < lower.
 struct AxisRange {
   double lower = 0;
   double upper = 1;
@@ -36,6 +36,9 @@ std::vector<Tick> axis_ticks(const AxisRange& range, Scale scale, int most);
 /// Where the value stands: 0 is the lower end of the range, 1 the upper.
 double place_on_axis(double value, const AxisRange& range, Scale scale);
 
+/// Pixels between a label and its mark.
+inline constexpr double label_gap = 8;
+
 /// How a text lies about its place, along its direction.
 enum class Align { left, centre, right };
 
@@ -44,6 +47,11 @@ struct Pixel {
   double x = 0;
   double y = 0;
 };
+
+void set_grey(cairo_t* cairo, double grey);
+
+/// Adds a line to the path.
+void add_line(cairo_t* cairo, const Pixel& from, const Pixel& to);
 
 /// Sets the size of the texts that follow, in pixels.
 void set_text_size(cairo_t* cairo, double size);

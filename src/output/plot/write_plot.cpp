@@ -6,7 +6,6 @@
 #include "output/plot/plot_ticks.h"
 
 #include <algorithm>
-#include <array>
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <cmath>
@@ -15,17 +14,15 @@
 #include <numbers>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {
 
 constexpr int plot_width = 900;
-
 constexpr int plot_height = 600;
 
 // Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white: the eyes of the
-// colour-blind tell them apart. 7 colours and 8 markers: the pairs repeat after 56 curves only.
+// color-blind tell them apart. 7 colors and 8 markers: the pairs repeat after 56 curves only.
 constexpr std::array<std::array<double, 3>, 7> curve_colours = {{{0, 0.447, 0.698},
                                                                  {0.835, 0.369, 0},
                                                                  {0, 0.620, 0.451},
@@ -36,13 +33,8 @@ constexpr std::array<std::array<double, 3>, 7> curve_colours = {{{0, 0.447, 0.69
 // Every seven curves other dashes: lengths of lines and gaps in pixels.
 const std::array<std::vector<double>, 4> dashes = {{{}, {8, 4}, {2.5, 3}, {10, 3, 2.5, 3}}};
 
-constexpr double line_width = 1.8;
 constexpr double marker_size = 4;
 constexpr double marker_distance = 60;
-
-enum class Marker { circle, square, triangle, diamond, turned_triangle, star, pentagon, cross };
-constexpr std::size_t markers = 8;
-static_assert(std::gcd(curve_colours.size(), markers) == 1, "else pairs of colour and marker repeat earlier");
 
 void set_colour(cairo_t* cairo, std::size_t curve) {
   const auto [red, green, blue] = curve_colours[curve % curve_colours.size()];
@@ -51,12 +43,24 @@ void set_colour(cairo_t* cairo, std::size_t curve) {
 
 // `corners` points on a circle, the first one at `angle` from the top; at every second one only `depth` of the radius.
 struct Star {
-  int corners = 4;
+  int corners = 0;  // none: a circle
   double angle = 0;
   double depth = 1;
 };
 
-void trace_star(cairo_t* cairo, const Pixel& at, const Star& star) {
+// Circle, square, triangle, diamond, turned triangle, star, pentagon and cross.
+constexpr std::array<Star, 8> markers = {{{},
+                                          {4, std::numbers::pi / 4},
+                                          {3},
+                                          {4},
+                                          {3, std::numbers::pi},
+                                          {10, 0, 0.45},
+                                          {5},
+                                          {8, std::numbers::pi / 4, 0.45}}};
+static_assert(std::gcd(curve_colours.size(), markers.size()) == 1, "else pairs of colour and marker repeat earlier");
+
+void trace_marker(cairo_t* cairo, const Pixel& at, const Star& star) {
+  if (star.corners == 0) return cairo_arc(cairo, at.x, at.y, marker_size, 0, 2 * std::numbers::pi);
   const double radius = (star.depth < 1 ? 1.5 : 1.25) * marker_size;
   for (int k = 0; k < star.corners; ++k) {
     const double angle = star.angle + 2 * std::numbers::pi * k / star.corners;
@@ -66,46 +70,24 @@ void trace_star(cairo_t* cairo, const Pixel& at, const Star& star) {
   cairo_close_path(cairo);
 }
 
-void trace_marker(cairo_t* cairo, const Pixel& at, Marker marker) {
-  using std::numbers::pi;
-  switch (marker) {
-    case Marker::circle:
-      return cairo_arc(cairo, at.x, at.y, marker_size, 0, 2 * pi);
-    case Marker::square:
-      return trace_star(cairo, at, {4, pi / 4});
-    case Marker::triangle:
-      return trace_star(cairo, at, {3, 0});
-    case Marker::diamond:
-      return trace_star(cairo, at, {4, 0});
-    case Marker::turned_triangle:
-      return trace_star(cairo, at, {3, pi});
-    case Marker::star:
-      return trace_star(cairo, at, {10, 0, 0.45});
-    case Marker::pentagon:
-      return trace_star(cairo, at, {5, 0});
-    case Marker::cross:
-      return trace_star(cairo, at, {8, pi / 4, 0.45});
-  }
-}
-
 double distance(const Pixel& a, const Pixel& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-// Draws a line through the points, in the colour and the dashes of the curve of this number.
+// Draws a line through the points, in the color and the dashes of the curve of this number.
 void draw_line(cairo_t* cairo, const std::vector<Pixel>& points, std::size_t curve) {
   for (const Pixel& point : points) cairo_line_to(cairo, point.x, point.y);
   const std::vector<double>& pattern = dashes[curve / curve_colours.size() % dashes.size()];
   set_colour(cairo, curve);
   cairo_set_dash(cairo, pattern.data(), static_cast<int>(pattern.size()), 0);
-  cairo_set_line_width(cairo, line_width);
+  cairo_set_line_width(cairo, 1.8);
   cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
   cairo_stroke(cairo);
   cairo_set_dash(cairo, nullptr, 0, 0);
 }
 
-// Draws a marker in the colour and the shape of the curve of this number.
+// Draws a marker in the color and the shape of the curve of this number.
 void draw_marker(cairo_t* cairo, const Pixel& at, std::size_t curve) {
   // A white edge sets it off from the lines below.
-  trace_marker(cairo, at, static_cast<Marker>(curve % markers));
+  trace_marker(cairo, at, markers[curve % markers.size()]);
   cairo_set_source_rgb(cairo, 1, 1, 1);
   cairo_set_line_width(cairo, 1.5);
   cairo_stroke_preserve(cairo);
@@ -113,12 +95,13 @@ void draw_marker(cairo_t* cairo, const Pixel& at, std::size_t curve) {
   cairo_fill(cairo);
 }
 
-// The points that get a marker: along the line some distance apart, at other places on neighbouring curves, and the
+// The points that get a marker: along the line some distance apart, at other places on neighboring curves, and the
 // last.
 std::vector<Pixel> marked_points(const std::vector<Pixel>& points, std::size_t curve) {
   if (points.empty()) return {};
   std::vector<Pixel> marked;
-  double since_last = marker_distance * static_cast<double>(curve % markers) / markers;
+  double since_last =
+      marker_distance * static_cast<double>(curve % markers.size()) / static_cast<double>(markers.size());
   for (std::size_t k = 1; k + 1 < points.size(); ++k) {
     since_last += distance(points[k - 1], points[k]);
     if (since_last < marker_distance) continue;
@@ -132,16 +115,12 @@ std::vector<Pixel> marked_points(const std::vector<Pixel>& points, std::size_t c
 
 // All lengths in pixels.
 constexpr double edge = 16;
-constexpr double label_gap = 8;
 constexpr double tick_length = 5;
 constexpr double title_size = 16;
 constexpr double label_size = 14;
 constexpr double number_size = 12;
 constexpr double swatch = 36;
 constexpr double widest_name = 240;
-constexpr double highest_row = 22;
-constexpr int most_numbers = 8;
-constexpr int most_decades = 12;
 
 // An axis and where its ends lie in the picture.
 struct AxisView {
@@ -167,7 +146,7 @@ Points shown_points(const Curve& curve, const Plot& plot) {
   return points;
 }
 
-int most_labels(Scale scale) { return scale == Scale::linear ? most_numbers : most_decades; }
+int most_labels(Scale scale) { return scale == Scale::linear ? 8 : 12; }
 
 AxisView axis_view(const Plot& plot, std::size_t coordinate) {
   std::vector<double> values;
@@ -204,7 +183,7 @@ std::vector<Tick> ticks_side_by_side(cairo_t* cairo, const AxisView& axis) {
 }
 
 double row_height(const Plot& plot, double height) {
-  return std::min(highest_row, height / static_cast<double>(std::max<std::size_t>(1, plot.curves.size())));
+  return std::min(22.0, height / static_cast<double>(std::max<std::size_t>(1, plot.curves.size())));
 }
 
 double name_size(double row) { return std::min(number_size, 0.7 * row); }
@@ -232,11 +211,8 @@ PlotView plot_view(cairo_t* cairo, const Plot& plot) {
   return view;
 }
 
-void set_grey(cairo_t* cairo, double grey) { cairo_set_source_rgb(cairo, grey, grey, grey); }
-
 void stroke_line(cairo_t* cairo, const Pixel& from, const Pixel& to) {
-  cairo_move_to(cairo, from.x, from.y);
-  cairo_line_to(cairo, to.x, to.y);
+  add_line(cairo, from, to);
   cairo_stroke(cairo);
 }
 
@@ -319,7 +295,7 @@ void draw_legend(cairo_t* cairo, const Plot& plot, const PlotView& view) {
   }
 }
 
-// Draws the plot over the whole surface, plot_width x plot_height units. What fails shows in cairo_status().
+// Draws the plot over the whole surface, plot_width x plot_height units. Failures show in cairo_status().
 void draw_plot(cairo_t* cairo, const Plot& plot) {
   cairo_set_source_rgb(cairo, 1, 1, 1);
   cairo_paint(cairo);
@@ -330,20 +306,11 @@ void draw_plot(cairo_t* cairo, const Plot& plot) {
   draw_legend(cairo, plot, view);
 }
 
-}  // namespace
-
-void write_plot(const std::filesystem::path& file, const Plot& plot) {
-  if (file.extension() != ".svg" && file.extension() != ".png")
-    throw OutputError(file.string(), "the extension names no known format of plots; expected .svg or .png");
-  write_drawing(file, plot_width, plot_height, [&](cairo_t* cairo) { draw_plot(cairo, plot); });
-}
-
-namespace {
-
 struct Destroy {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
   void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
 };
+
 struct Drawing {
   int width, height;
   const std::function<void(cairo_t*)>& draw;
@@ -396,6 +363,12 @@ std::string svg_bytes(const Drawing& drawing, const std::filesystem::path& file)
 }
 
 }  // namespace
+
+void write_plot(const std::filesystem::path& file, const Plot& plot) {
+  if (file.extension() != ".svg" && file.extension() != ".png")
+    throw OutputError(file.string(), "the extension names no known format of plots; expected .svg or .png");
+  write_drawing(file, plot_width, plot_height, [&](cairo_t* cairo) { draw_plot(cairo, plot); });
+}
 
 void write_drawing(const std::filesystem::path& file, int width, int height,
                    const std::function<void(cairo_t*)>& draw) {

@@ -25,7 +25,7 @@ struct Axis {
   Scale scale = Scale::linear;
 };
 
-/// Curves over common axes, which reach as far as the points. The first 56 curves differ in colour, dashes or markers.
+/// Curves over common axes, which reach as far as the points. The first 56 curves differ in color, dashes or markers.
 struct Plot {
   std::string title;
   Axis x;
@@ -34,8 +34,8 @@ struct Plot {
 };
 
 /// Writes the plot, 900 x 600 pixels, as .svg or .png after the extension; no display is needed. The same plot gives
-/// the same bytes. Points that an axis cannot show are left out as if they were not there: what is not finite or larger
-/// than 1e200 in size, on a logarithmic axis also what is below 1e-200. Texts are UTF-8; too long ones are cut. \throws
+/// the same bytes. Points that an axis cannot show are left out: values that are not finite or larger than 1e200 in
+/// size, on a logarithmic axis also those below 1e-200. Texts are UTF-8; too long ones are cut. \throws
 /// OutputError, also for another extension.
 void write_plot(const std::filesystem::path& file, const Plot& plot);
 

@@ -1,24 +1,18 @@
 #include "output/plot/write_sensor_map.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/sensor.h"
 
 #include "base/rounded.h"
 #include "output/plot/plot_ticks.h"
 #include "output/plot/write_plot.h"
 #include "render/tone_map.h"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cairo.h>
 #include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -37,29 +31,6 @@ std::vector<Eigen::Vector2d> crossings(const std::array<double, 4>& values, doub
   }
   return found;
 }
-
-}  // namespace
-
-std::vector<IsolinePiece> isoline(const Eigen::MatrixXd& values, double level) {
-  std::vector<IsolinePiece> pieces;
-  for (Eigen::Index row = 0; row + 1 < values.rows(); ++row) {
-    for (Eigen::Index column = 0; column + 1 < values.cols(); ++column) {
-      const std::array<double, 4> around = {values(row, column), values(row, column + 1), values(row + 1, column + 1),
-                                            values(row + 1, column)};
-      const double mean = (around[0] + around[1] + around[2] + around[3]) / 4;
-      if (!(mean == mean)) continue;
-      const auto found = crossings(around, static_cast<double>(column), static_cast<double>(row), level);
-      // Of a saddle with four crossings the middle says which belong together.
-      const std::size_t shift = found.size() == 4 && (mean >= level) == (around[0] >= level) ? 0 : 1;
-      if (found.size() == 2) pieces.push_back({found[0], found[1]});
-      for (std::size_t k = 0; found.size() == 4 && k < 4; k += 2)
-        pieces.push_back({found[(k + shift) % 4], found[(k + shift + 1) % 4]});
-    }
-  }
-  return pieces;
-}
-
-namespace {
 
 // The lattice that the cells of a grid lie on.
 struct SensorLattice {
@@ -102,7 +73,7 @@ struct PixelArea {
   double height = 0;
 };
 
-constexpr double ink = 0.1;  // grey of lines and texts
+constexpr double ink = 0.1;  // gray of lines and texts
 
 bool meets(const PixelArea& area, const std::array<Pixel, 2>& line) {
   const auto [left, right] = std::minmax(line[0].x, line[1].x);
@@ -117,39 +88,36 @@ double round_below(double value) {
   return (value >= 5 * power ? 5 : value >= 2 * power ? 2 : 1) * power;
 }
 
-// Sets the false colour of a value.
+// Sets the false color of a value.
 void set_false_colour(cairo_t* cairo, double value, const AxisRange& range) {
   const auto colour = false_color(Eigen::VectorXd::Constant(1, value), range.lower, range.upper)[0];
   cairo_set_source_rgb(cairo, colour[0] / 255.0, colour[1] / 255.0, colour[2] / 255.0);
 }
 
-// Draws the bar of false colours with labels at these ticks.
+// Draws the bar of false colors with labels at these ticks.
 void draw_colours(cairo_t* cairo, const PixelArea& bar, const AxisRange& range, std::span<const Tick> ticks) {
-  constexpr int steps = 128;
-  constexpr double gap = 8;
+  const int steps = 128;
   for (int k = 0; k < steps; ++k) {
     set_false_colour(cairo, range.upper - (k + 0.5) / steps * (range.upper - range.lower), range);
     cairo_rectangle(cairo, bar.corner.x, bar.corner.y + k * bar.height / steps, bar.width, bar.height / steps + 0.5);
     cairo_fill(cairo);
   }
-  cairo_set_source_rgb(cairo, ink, ink, ink);
+  set_grey(cairo, ink);
   for (const Tick& tick : ticks) {
     const double y = bar.corner.y + bar.height * (1 - place_on_axis(tick.value, range, Scale::linear));
-    draw_label(cairo, {bar.corner.x + bar.width + gap, y}, tick, Align::left);
+    draw_label(cairo, {bar.corner.x + bar.width + label_gap, y}, tick, Align::left);
   }
 }
 
-// Draws what of these lines lies in the area.
+// Draws the parts of these lines in the area.
 void draw_walls(cairo_t* cairo, const PixelArea& area, std::span<const std::array<Pixel, 2>> walls) {
   cairo_save(cairo);
   cairo_rectangle(cairo, area.corner.x, area.corner.y, area.width, area.height);
   cairo_clip(cairo);
-  cairo_set_source_rgb(cairo, ink, ink, ink);
+  set_grey(cairo, ink);
   cairo_set_line_width(cairo, 1.5);
   for (const std::array<Pixel, 2>& line : walls) {
-    if (!meets(area, line)) continue;
-    cairo_move_to(cairo, line[0].x, line[0].y);
-    cairo_line_to(cairo, line[1].x, line[1].y);
+    if (meets(area, line)) add_line(cairo, line[0], line[1]);
   }
   cairo_stroke(cairo);
   cairo_restore(cairo);
@@ -157,71 +125,58 @@ void draw_walls(cairo_t* cairo, const PixelArea& area, std::span<const std::arra
 
 // Draws an arrow upwards with an N, its right end halfway up at `at`.
 void draw_north(cairo_t* cairo, const Pixel& at) {
-  constexpr double half_length = 7, half_width = 3, head = 6;
+  const double half_length = 7, half_width = 3, head = 6;
   const double x = at.x - half_width, top = at.y - half_length;
-  cairo_set_source_rgb(cairo, ink, ink, ink);
+  set_grey(cairo, ink);
   cairo_set_line_width(cairo, 1);
-  cairo_move_to(cairo, x, at.y + half_length);
-  cairo_line_to(cairo, x, top);
+  add_line(cairo, {x, at.y + half_length}, {x, top});
   cairo_stroke(cairo);
-  cairo_move_to(cairo, x, top);
-  cairo_line_to(cairo, x + half_width, top + head);
+  add_line(cairo, {x, top}, {x + half_width, top + head});
   cairo_line_to(cairo, x - half_width, top + head);
   cairo_close_path(cairo);
   cairo_fill(cairo);
   draw_text(cairo, {x - 2 * half_width, at.y}, "N", Align::right);
 }
 
-// Draws a bar of a round number of metres from `at` to the right, `most` pixels at most, with its length.
+// Draws a bar of a round number of meters from `at` to the right, `most` pixels at most, with its length.
 void draw_scale_bar(cairo_t* cairo, const Pixel& at, double pixels_per_metre, double most) {
-  constexpr double end = 4, gap = 8;  // half the height of the bar's ends
+  const double end = 4;  // half the height of the bar's ends
   const double metres = round_below(most / pixels_per_metre);
   const double right = at.x + metres * pixels_per_metre;
-  cairo_set_source_rgb(cairo, ink, ink, ink);
+  set_grey(cairo, ink);
   cairo_set_line_width(cairo, 1.5);
-  cairo_move_to(cairo, at.x, at.y - end);
-  cairo_line_to(cairo, at.x, at.y + end);
-  cairo_move_to(cairo, at.x, at.y);
-  cairo_line_to(cairo, right, at.y);
-  cairo_move_to(cairo, right, at.y - end);
-  cairo_line_to(cairo, right, at.y + end);
+  add_line(cairo, {at.x, at.y - end}, {at.x, at.y + end});
+  add_line(cairo, at, {right, at.y});
+  add_line(cairo, {right, at.y - end}, {right, at.y + end});
   cairo_stroke(cairo);
-  draw_text(cairo, {right + gap, at.y}, shortest(metres) + " m", Align::left);
+  draw_text(cairo, {right + label_gap, at.y}, shortest(metres) + " m", Align::left);
 }
 
 // All lengths in pixels.
 constexpr double map_edge = 24;
-constexpr double widest_map = 520;
 constexpr double highest_map = 420;
 constexpr double line_height = 18;
-constexpr double room_of_arrow = 24;  // with its N
-constexpr double bar_width = 22;
-constexpr double legend_room = 150;
 constexpr double map_text = 12;
-constexpr std::size_t most_maps = 64;
 constexpr int most_levels = 9;
-constexpr double wall_margin = 0.1;  // around grids, as a share of width and height together
-constexpr double longest_scale_bar = 100;
 
-// One grid, with its axes and what it reads.
+// One grid, with its axes and readings.
 struct GridMap {
   const SensorGroup* group = nullptr;
   std::vector<std::array<Point, 4>> cells;
   std::vector<double> values;
   std::span<const std::array<Point, 2>> walls;      // that stand where the grid's plane cuts the model
   Vector right, above;                              // unit
-  double left = 0, top = 0, width = 0, height = 0;  // along these, metres
+  double left = 0, top = 0, width = 0, height = 0;  // along these, meters
 };
 
 // Where things stand in the file.
 struct Placed {
-  double x = 0, y = 0, scale = 1;  // of the map's upper left corner; pixels per metre
+  double x = 0, y = 0, scale = 1;  // of the map's upper left corner; pixels per meter
 };
 
 // Squares around sensors whose file says nothing of cells, as wide as the two nearest are apart; none around few.
 std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sensors, const GridMap& map) {
-  constexpr std::size_t least = 4, most = 20000;
-  if (sensors.size() < least || sensors.size() > most) return {};
+  if (sensors.size() < 4 || sensors.size() > 20000) return {};
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     for (std::size_t other = 0; other < k; ++other) {
@@ -246,21 +201,16 @@ GridMap grid_map(const SensorGroup& group, std::vector<double> values, std::span
   map.right = axes.right;
   map.above = axes.above;
   if (map.cells.empty()) map.cells = squares_around(group.sensors, map);
-  double right = -std::numeric_limits<double>::infinity(), bottom = right;
-  map.left = -right;
-  map.top = -right;
+  Eigen::AlignedBox2d box;
   for (const auto& cell : map.cells) {
-    for (const Point& corner : cell) {
-      map.left = std::min(map.left, corner.dot(map.right));
-      right = std::max(right, corner.dot(map.right));
-      map.top = std::min(map.top, -corner.dot(map.above));
-      bottom = std::max(bottom, -corner.dot(map.above));
-    }
+    for (const Point& corner : cell) box.extend(Eigen::Vector2d(corner.dot(map.right), -corner.dot(map.above)));
   }
-  map.width = right - map.left;
-  map.height = bottom - map.top;
+  map.left = box.min().x();
+  map.top = box.min().y();
+  map.width = box.sizes().x();
+  map.height = box.sizes().y();
   // Walls stand a little way off.
-  const double margin = walls.empty() ? 0 : wall_margin * (map.width + map.height);
+  const double margin = walls.empty() ? 0 : 0.1 * (map.width + map.height);
   map.left -= margin;
   map.top -= margin;
   map.width += 2 * margin;
@@ -281,7 +231,7 @@ std::vector<GridMap> grid_maps(std::span<const SensorGroup> groups, const Readin
                        : options.quantity == MapQuantity::daylight_factor ? daylight_factor(readings, sensor)
                                                                           : sensor_value(readings, sensor).value);
     }
-    if (group.sensors.empty() || maps.size() >= most_maps) continue;
+    if (group.sensors.empty() || maps.size() >= 64) continue;
     std::span<const std::array<Point, 2>> walls;
     assert(options.sections.empty() || number < options.sections.size());
     if (!options.sections.empty()) walls = options.sections[number];
@@ -316,7 +266,7 @@ void draw_cells(cairo_t* cairo, const GridMap& map, const Placed& at, const Axis
     if (std::isfinite(map.values[k]))
       set_false_colour(cairo, map.values[k], range);
     else
-      cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
+      set_grey(cairo, 0.8);
     cairo_fill_preserve(cairo);
     // Over the seam to the next cell
     cairo_set_line_width(cairo, 0.6);
@@ -330,7 +280,7 @@ void draw_level(cairo_t* cairo, const Pixel& at, const Tick& tick) {
   cairo_set_source_rgba(cairo, 1, 1, 1, 0.75);
   cairo_rectangle(cairo, at.x - half, at.y - map_text / 2, 2 * half, map_text);
   cairo_fill(cairo);
-  cairo_set_source_rgb(cairo, 0, 0, 0);
+  set_grey(cairo, 0);
   draw_label(cairo, at, tick, Align::centre);
 }
 
@@ -342,12 +292,10 @@ void draw_isolines(cairo_t* cairo, const GridMap& map, const Placed& at, const s
   for (const Tick& level : levels) {
     const std::vector<IsolinePiece> pieces = isoline(lattice.values, level.value);
     if (pieces.empty()) continue;
-    cairo_set_source_rgb(cairo, 0, 0, 0);
+    set_grey(cairo, 0);
     cairo_set_line_width(cairo, 1);
     for (const auto& [from, to] : pieces) {
-      const Pixel a = pixel(from), b = pixel(to);
-      cairo_move_to(cairo, a.x, a.y);
-      cairo_line_to(cairo, b.x, b.y);
+      add_line(cairo, pixel(from), pixel(to));
     }
     cairo_stroke(cairo);
     const auto& [from, to] = pieces[pieces.size() / 2];
@@ -388,7 +336,7 @@ std::string told(const GridMap& map, const std::string& unit) {
          (mean > 0 ? digits(least / mean) : "-");
 }
 
-// What all maps of a file have in common.
+// Common to all maps of a file.
 struct MapStyle {
   AxisRange range;
   std::vector<Tick> levels;
@@ -401,10 +349,10 @@ void draw_map(cairo_t* cairo, const GridMap& map, const Placed& at, const MapSty
   draw_cells(cairo, map, at, style.range);
   draw_walls(cairo, map, at);
   draw_isolines(cairo, map, at, style.levels);
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  set_grey(cairo, ink);
   const bool has_arrow = style.options.north_known && is_seen_from_above(map, style.options);
   const double of_arrow = std::max(map.width * at.scale, style.width / 2);
-  const double of_name = has_arrow ? of_arrow - room_of_arrow : style.width;
+  const double of_name = has_arrow ? of_arrow - 24 : style.width;  // room of the arrow with its N
   draw_text(cairo, {at.x, at.y - line_height / 2}, fitting_text(cairo, map.group->name, of_name), Align::left);
   draw_text(cairo, {at.x, at.y + map.height * at.scale + line_height / 2}, told(map, style.unit), Align::left);
   if (has_arrow) draw_north(cairo, {at.x + of_arrow, at.y - line_height / 2});
@@ -412,7 +360,7 @@ void draw_map(cairo_t* cairo, const GridMap& map, const Placed& at, const MapSty
 
 // Maps all to one scale, two beside each other.
 struct Layout {
-  double scale = 1;  // pixels for each metre
+  double scale = 1;  // pixels for each meter
   double wide = 0, high = 0;
   std::size_t columns = 1, rows = 1;
 };
@@ -423,7 +371,7 @@ Layout layout_of(std::span<const GridMap> maps) {
     widest = std::max(widest, map.width);
     highest = std::max(highest, map.height);
   }
-  const double scale = std::min(widest_map / widest, highest_map / highest);
+  const double scale = std::min(520 / widest, highest_map / highest);
   const std::size_t columns = std::min<std::size_t>(2, maps.size());
   return {scale, std::max(widest * scale, 300.0) + map_edge, highest * scale + 2 * line_height + map_edge, columns,
           (maps.size() + columns - 1) / columns};
@@ -435,6 +383,25 @@ std::string title_of(MapQuantity quantity, const Readings& readings, const std::
 }
 
 }  // namespace
+
+std::vector<IsolinePiece> isoline(const Eigen::MatrixXd& values, double level) {
+  std::vector<IsolinePiece> pieces;
+  for (Eigen::Index row = 0; row + 1 < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column + 1 < values.cols(); ++column) {
+      const std::array<double, 4> around = {values(row, column), values(row, column + 1), values(row + 1, column + 1),
+                                            values(row + 1, column)};
+      const double mean = (around[0] + around[1] + around[2] + around[3]) / 4;
+      if (!(mean == mean)) continue;
+      const auto found = crossings(around, static_cast<double>(column), static_cast<double>(row), level);
+      // Of a saddle with four crossings the middle says which belong together.
+      const std::size_t shift = found.size() == 4 && (mean >= level) == (around[0] >= level) ? 0 : 1;
+      if (found.size() == 2) pieces.push_back({found[0], found[1]});
+      for (std::size_t k = 0; found.size() == 4 && k < 4; k += 2)
+        pieces.push_back({found[(k + shift) % 4], found[(k + shift + 1) % 4]});
+    }
+  }
+  return pieces;
+}
 
 void write_sensor_map(const std::filesystem::path& file, std::span<const SensorGroup> groups, const Readings& readings,
                       const MapOptions& options) {
@@ -449,11 +416,11 @@ void write_sensor_map(const std::filesystem::path& file, std::span<const SensorG
   const Layout layout = layout_of(maps);
   const MapStyle style{range, axis_ticks(range, Scale::linear, most_levels), unit, layout.wide - map_edge, options};
   const double legend = map_edge + static_cast<double>(layout.columns) * layout.wide;
-  const int width = static_cast<int>(std::ceil(legend + legend_room + map_edge));
+  const int width = static_cast<int>(std::ceil(legend + 150 + map_edge));
   const int height = static_cast<int>(
       std::ceil(std::max(map_edge + static_cast<double>(layout.rows) * layout.high, highest_map + 3 * map_edge)));
   write_drawing(file, width, height, [&](cairo_t* cairo) {
-    cairo_set_source_rgb(cairo, 1, 1, 1);
+    set_grey(cairo, 1);
     cairo_paint(cairo);
     set_text_size(cairo, map_text);
     for (std::size_t k = 0; k < maps.size(); ++k) {
@@ -462,11 +429,11 @@ void write_sensor_map(const std::filesystem::path& file, std::span<const SensorG
                       map_edge + line_height + static_cast<double>(row) * layout.high, layout.scale};
       draw_map(cairo, maps[k], at, style);
     }
-    cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+    set_grey(cairo, ink);
     draw_text(cairo, {legend, map_edge + line_height / 2}, title_of(options.quantity, readings, unit), Align::left);
     const double top = map_edge + 2 * line_height;
-    draw_colours(cairo, {{legend, top}, bar_width, highest_map - 2 * line_height}, range, style.levels);
-    draw_scale_bar(cairo, {legend, map_edge + highest_map + line_height}, layout.scale, longest_scale_bar);
+    draw_colours(cairo, {{legend, top}, 22, highest_map - 2 * line_height}, range, style.levels);
+    draw_scale_bar(cairo, {legend, map_edge + highest_map + line_height}, layout.scale, 100);
   });
 }
 

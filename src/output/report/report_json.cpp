@@ -1,12 +1,8 @@
 #include "output/report/report_json.h"
 
-#include "patchlight/output/write_result.h"
-#include "patchlight/report/report.h"
-
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 namespace patchlight {
@@ -22,27 +18,6 @@ Json errors_of(const AccuracyStep& step) {
           {"display", step.display}};
 }
 
-}  // namespace
-
-Json relative_errors(const std::vector<AccuracyStep>& steps) {
-  if (steps.empty()) return nullptr;
-  Json part = errors_of(steps.back());
-  part["inside"] = steps.back().inside;
-  return part;
-}
-
-Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {
-  if (spaces.empty()) return nullptr;
-  Json part;
-  for (const SpaceErrors& space : spaces) {
-    part[space.space] = errors_of(space.errors);
-    part[space.space]["patches"] = space.errors.patches;
-  }
-  return part;
-}
-
-namespace {
-
 // Lists the refinements on the way to an accuracy: an entry for each mesh. Empty without error bars.
 Json accuracy_steps(const std::vector<AccuracyStep>& steps) {
   Json parts = Json::array();
@@ -56,23 +31,6 @@ Json accuracy_steps(const std::vector<AccuracyStep>& steps) {
   return parts;
 }
 
-}  // namespace
-
-nlohmann::ordered_json decisions_part(const std::vector<Decision>& decisions) {
-  nlohmann::ordered_json part = nlohmann::ordered_json::array();
-  for (const Decision& decision : decisions) {
-    part.push_back({{"effect", name_of(decision.effect)},
-                    {"simulate", decision.simulate},
-                    {"reason", decision.reason},
-                    {"saving", decision.saving},
-                    {"forced", decision.forced}});
-  }
-  return part;
-}
-
-namespace {
-
-// What sensors read, group by group, as a part of the report.
 Json sensors_part(const SensorFacts& sensors) {
   Json part;
   part["unit"] = sensors.unit;
@@ -97,11 +55,11 @@ Json sensors_part(const SensorFacts& sensors) {
 
 constexpr auto note_on_coarse =
     "min and uniformity of a surface that is coarse may be too high, as dark patches of it are larger than the cells "
-    "of a "
-    "grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight init writes "
+    "of a grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight init "
+    "writes "
     "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
 
-// What floor, walls and ceiling of each room get, as a part of the report.
+// The light on floor, walls and ceiling of each room.
 Json rooms_part(const Report& report) {
   Json part;
   part["unit"] = report.unit;
@@ -126,7 +84,7 @@ Json rooms_part(const Report& report) {
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json json_of(const std::optional<std::size_t>& value) { return value ? Json(*value) : Json(); }
 
-// Bands of wavelengths, and what colours are told of them.
+// Bands of wavelengths, and how colors follow from them.
 Json bands_part(const Bands& bands) {
   Json edges = Json::array();
   for (const Band& band : bands) edges.push_back(band.edges_nm);
@@ -229,7 +187,7 @@ Json mesh_part(const Report& report) {
   return {{"patches", report.patches}, {"vertices", report.vertices}, {"area_m2", report.area}};
 }
 
-// The colour of the light that a material sends out in the mean of its area.
+// The color of the light that a material sends out in the mean of its area.
 void add_colour(Json& part, const MaterialLight& material, const Bands& bands) {
   const Eigen::Vector3d xyz = xyz_of(material.radiance, bands);
   part["radiance_mean_W_m2_sr"] = json_array(material.radiance);
@@ -350,6 +308,37 @@ std::uint64_t memory_peak_bytes() {
 
 }  // namespace
 
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json relative_errors(const std::vector<AccuracyStep>& steps) {
+  if (steps.empty()) return nullptr;
+  Json part = errors_of(steps.back());
+  part["inside"] = steps.back().inside;
+  return part;
+}
+
+Json relative_errors_by_space(const std::vector<SpaceErrors>& spaces) {
+  if (spaces.empty()) return nullptr;
+  Json part;
+  for (const SpaceErrors& space : spaces) {
+    part[space.space] = errors_of(space.errors);
+    part[space.space]["patches"] = space.errors.patches;
+  }
+  return part;
+}
+
+Json decisions_part(const std::vector<Decision>& decisions) {
+  Json part = Json::array();
+  for (const Decision& decision : decisions) {
+    part.push_back({{"effect", name_of(decision.effect)},
+                    {"simulate", decision.simulate},
+                    {"reason", decision.reason},
+                    {"saving", decision.saving},
+                    {"forced", decision.forced}});
+  }
+  return part;
+}
+
 Json report_json(const Report& report, const Provenance& provenance) {
   Json json;
   json["version"] = version();
@@ -374,9 +363,7 @@ Json report_json(const Report& report, const Provenance& provenance) {
 }
 
 void write_report(const std::filesystem::path& file, const Report& report, const Provenance& provenance) {
-  const Json json = report_json(report, provenance);
-  // Names from a model may hold bytes that are not UTF-8: they are replaced.
-  write_bytes(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_bytes(file, json_text(report_json(report, provenance)));
 }
 
 }  // namespace patchlight

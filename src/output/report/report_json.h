@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/output/provenance.h"
+#include "patchlight/output/write_result.h"
 #include "patchlight/plan/effects.h"
 #include "patchlight/report/report.h"
 #include "patchlight/simulate.h"
@@ -18,6 +18,9 @@ inline nlohmann::ordered_json json_of(const Diagnostics& diagnostics) {
         {{"code", name_of(found.code)}, {"severity", name_of(severity_of(found.code))}, {"text", found.text}});
   return array;
 }
+
+/// The text of a JSON file. Names from a model may hold bytes that are not UTF-8: they are replaced.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// The values in their order. Numbers that are not finite are written as null.
 template <class Values>
@@ -37,7 +40,7 @@ nlohmann::ordered_json relative_errors_by_space(const std::vector<SpaceErrors>& 
 /// An array of objects with effect, simulate, reason, saving and forced.
 nlohmann::ordered_json decisions_part(const std::vector<Decision>& decisions);
 
-/// The report as write_report() writes it. Names from a model may hold bytes that are not UTF-8.
+/// The report as write_report() writes it.
 nlohmann::ordered_json report_json(const Report& report, const Provenance& provenance);
 
 }  // namespace patchlight

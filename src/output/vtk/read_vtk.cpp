@@ -30,7 +30,7 @@ namespace {
 
 // Numbers in files are doubles here. Those that are no index become the largest one, which names nothing.
 std::uint32_t index_of(double number) {
-  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  const std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   return number >= 0 && number < none ? static_cast<std::uint32_t>(number) : none;
 }
 

@@ -26,7 +26,7 @@ Pointer<vtkPolyData> polygons_of(const PatchMesh& mesh);
 /// One tuple per row, narrowed to float.
 Pointer<vtkFloatArray> floats(const char* name, const FieldView& values);
 
-/// One tuple of three bytes per colour.
+/// One tuple of three bytes per color.
 Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values);
 
 Pointer<vtkStringArray> strings(const std::string& name, const std::vector<std::string>& values);

@@ -1,11 +1,10 @@
-#include "output/vtk/write_points.h"
-
 #include "patchlight/gather/readings.h"
 #include "patchlight/scene/sensor.h"
 
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 #include "output/vtk/vtk_polygons.h"
+#include "output/vtk/write_vtk.h"
 
 #include <cassert>
 #include <filesystem>
@@ -125,7 +124,7 @@ std::vector<std::string> units_of(const Readings& readings) {
   return all;
 }
 
-// What sensors read as VTK XML PolyData. Cell arrays: irradiance, irradiance_standard_error, illuminance or
+// The readings as VTK XML PolyData. Cell arrays: irradiance, irradiance_standard_error, illuminance or
 // weighted_irradiance with its standard error, daylight_factor where there is one, normal, group (its number),
 // sensor (its row in the table) and inside_wall (1 or 0; the values there are NaN). FieldData: group_names, units.
 // Cells come in VTK's order: vertices first, then polygons. Throws OutputError.

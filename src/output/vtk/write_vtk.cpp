@@ -31,7 +31,7 @@
 namespace patchlight {
 namespace {
 
-// The unit of every array of values; docs/reference/outputs/vtp.md says what they mean.
+// The unit of every array of values; docs/reference/outputs/vtp.md explains them.
 constexpr std::array<std::array<const char*, 2>, 25> units_of_arrays = {
     {{"radiance", "W/(m^2 sr)"},
      {"radiosity", "W/m^2"},
@@ -140,13 +140,19 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   add_known("raw_row_sum", simulation.transport.raw_row_sum);
   add_known("ambient_occlusion", surface.ambient_occlusion);
   cell_data.AddArray(colours("rgb", tone_map(radiance, exposure, bands)));
-  // What a viewer shows first.
+  // Viewers show these first.
   cell_data.SetActiveScalars("luminance");
   vtkPointData& point_data = *polygons.GetPointData();
   point_data.AddArray(floats("radiance_smooth", surface.radiance_at_vertices));
   point_data.AddArray(colours("rgb_smooth", tone_map(surface.radiance_at_vertices, exposure, bands)));
   if (surface.ambient_occlusion_at_vertices.size() > 0)
     point_data.AddArray(numbers<vtkFloatArray>("ambient_occlusion", surface.ambient_occlusion_at_vertices));
+}
+
+Pointer<vtkDoubleArray> up_of(const Scene& scene) {
+  auto up = numbers<vtkDoubleArray>("up", scene.up);
+  up->SetNumberOfComponents(3);
+  return up;
 }
 
 template <class Value>
@@ -222,28 +228,12 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Simulation& simula
   facts.AddArray(strings("decisions", decisions));
   facts.AddArray(strings("seed", {std::to_string(simulation.plan.assembly.seed)}));  // 64 bits do not fit a double
   facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
-  const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);
-  up->SetNumberOfComponents(3);
-  facts.AddArray(up);
+  facts.AddArray(up_of(scene));
   add_what_pictures_need(facts, simulation, provenance);
   add_bands(facts, bands_of(scene));
   // One array per unit: ParaView's information panel shows the value of a string array with one entry.
   for (const auto& [name, unit] : units_of_arrays) facts.AddArray(strings(std::string("unit_") + name, {unit}));
 }
-
-}  // namespace
-
-void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
-  const Pointer<vtkPolyData> polygons = polygons_of(surface.simulation.mesh);
-  add_values(*polygons, surface, provenance.exposure);
-  add_facts(*polygons->GetFieldData(), surface.scene, surface.simulation, provenance);
-  add_history(*polygons->GetFieldData(), surface.simulation);
-
-  if (file.extension() == ".vtu") return write_grid(file, *polygons);
-  write_polygons(file, *polygons);
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -284,7 +274,7 @@ bool is_of_series(const fs::path& pvd, const std::string& name) {
   return name.starts_with(stem) && std::regex_match(name.substr(stem.size()), rest);
 }
 
-// What was made for a new series of which the .pvd does not speak yet: removed, last first, when the scope is left.
+// Files of a new series that the .pvd does not name yet: removed, last first, when the scope is left.
 struct Unfinished {
   std::vector<fs::path> made;
   ~Unfinished() {
@@ -300,15 +290,13 @@ void add_facts(vtkFieldData& facts, const Scene& scene, const Iteration& iterati
   facts.AddArray(numbers<vtkDoubleArray>("exposure", std::array{provenance.exposure}));
   facts.AddArray(strings("version", {std::string("patchlight ") + version()}));
   facts.AddArray(strings("command_line", {provenance.command_line}));
-  const Pointer<vtkDoubleArray> up = numbers<vtkDoubleArray>("up", scene.up);
-  up->SetNumberOfComponents(3);
-  facts.AddArray(up);
+  facts.AddArray(up_of(scene));
   facts.AddArray(strings("unit_radiance", {"W/(m^2 sr)"}));
   facts.AddArray(strings("unit_irradiance", {"W/m^2"}));
   facts.AddArray(strings("unit_rgb", {"sRGB, 8 bits, at the recorded exposure"}));
 }
 
-// `colours_of` maps a radiance to colours.
+// `colours_of` maps a radiance to colors.
 template <typename ColoursOf>
 void add_values(vtkCellData& cells, const RadiosityProblem& problem, const Field& irradiance,
                 const ColoursOf& colours_of) {
@@ -330,24 +318,8 @@ bool is_xml_text(const std::string& text) {
   }
 }
 
-// XML's five entities.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text) {
-    if (letter == '&')
-      result += "&amp;";
-    else if (letter == '<')
-      result += "&lt;";
-    else if (letter == '>')
-      result += "&gt;";
-    else if (letter == '"')
-      result += "&quot;";
-    else if (letter == '\'')
-      result += "&apos;";
-    else
-      result += letter;
-  }
-  return result;
+std::string xml(const std::string& text) {
+  return replaced(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&apos;"}});
 }
 
 std::string collection(const std::string& folder, const std::vector<std::string>& names,
@@ -357,7 +329,7 @@ std::string collection(const std::string& folder, const std::vector<std::string>
       "  <Collection>\n";
   for (std::size_t k = 0; k < names.size(); ++k) {
     text += "    <DataSet timestep=\"" + std::to_string(history[k].number) + "\" part=\"0\" file=\"" +
-            escaped(folder + "/" + names[k]) + "\"/>\n";
+            xml(folder + "/" + names[k]) + "\"/>\n";
   }
   return text + "  </Collection>\n</VTKFile>\n";
 }
@@ -368,21 +340,19 @@ void remove_older(const fs::path& pvd, const std::vector<std::string>& names) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(series_folder(pvd), ignored)) {
     const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file(ignored) && is_of_series(pvd, name) && !kept.contains(name)) {
+    if (entry.is_regular_file(ignored) && is_of_series(pvd, name) && !kept.contains(name))
       fs::remove(entry.path(), ignored);
-    }
   }
 }
 
-// The folder of a series, which is one run's as long as this lives: what two runs wrote at a time, the first would
-// lose.
+// The folder of a series, which belongs to one run as long as this lives: of two runs at a time, the first would lose
+// its files.
 class LockedFolder {
  public:
   LockedFolder(const fs::path& folder, const Observer& observer) {
-    constexpr auto wait = std::chrono::milliseconds(20);
     while (!is_locked(folder)) {
       if (observer && !observer({.stage = Stage::write})) throw Cancelled();
-      std::this_thread::sleep_for(wait);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
   ~LockedFolder() {
@@ -417,6 +387,16 @@ class LockedFolder {
 };
 
 }  // namespace
+
+void write_vtk(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance) {
+  const Pointer<vtkPolyData> polygons = polygons_of(surface.simulation.mesh);
+  add_values(*polygons, surface, provenance.exposure);
+  add_facts(*polygons->GetFieldData(), surface.scene, surface.simulation, provenance);
+  add_history(*polygons->GetFieldData(), surface.simulation);
+
+  if (file.extension() == ".vtu") return write_grid(file, *polygons);
+  write_polygons(file, *polygons);
+}
 
 fs::path series_folder(const fs::path& pvd) { return pvd.parent_path() / (pvd.stem().string() + "_series"); }
 

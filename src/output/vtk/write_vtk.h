@@ -1,12 +1,17 @@
 #pragma once
 
-#include "patchlight/output/provenance.h"
+#include "patchlight/gather/readings.h"
+#include "patchlight/output/write_result.h"
+#include "patchlight/scene/sensor.h"
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
+
+#include "plan/survey.h"
 
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +38,7 @@ void write_series(const std::filesystem::path& pvd, const Scene& scene, const Si
                   const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
                   const Observer& observer = {});
 
-/// What makes the .pvd file appear with this text.
+/// Makes the .pvd file appear with this text.
 using PublishCollection = std::function<void(const std::string& collection)>;
 
 /// The same; the .pvd is left to `publish`, which may let other files appear with it. When it throws, the older series
@@ -47,5 +52,22 @@ std::filesystem::path series_folder(const std::filesystem::path& pvd);
 
 /// Fails early: \throws OutputError when write_series could not write here.
 void check_series_writable(const std::filesystem::path& pvd);
+
+/// The extensions that write_points() knows, with their dots.
+std::vector<std::string> points_extensions();
+
+/// Writes the readings of sensors, by the extension of the file. .csv: a header line and a line for each sensor: x, y,
+/// z, nx, ny, nz as they were given (in meters where there is no such text), irradiance, its standard error and that
+/// one's parts per band in W/m^2 (E_r, E_g, E_b for three bands), with photometric lights illuminance and its standard
+/// error in lx, under an overcast sky the daylight factor in percent, 1 inside a wall (where values are nan) and else
+/// 0, and the group. .vtp: the same for ParaView, cells of grids as polygons, other sensors as vertices. \throws
+/// OutputError.
+void write_points(const std::filesystem::path& file, std::span<const SensorGroup> groups, const Readings& readings);
+
+/// Writes a scene and the faces that are wrong in it as VTK XML PolyData (.vtp) for ParaView. Cell arrays: problem_kind
+/// (0: a polygon with nothing wrong; else the place of its problem in the field array problem_names, from 1), severity
+/// (0 nothing, 1 remark, 2 warning, 3 error), source_file, source_line and source_polygon. A face with several problems
+/// is there once for each; faces that were left out are there as the model has them. \throws OutputError.
+void write_problems(const std::filesystem::path& file, const Scene& scene, const SceneReport& report);
 
 }  // namespace patchlight

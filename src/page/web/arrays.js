@@ -1,4 +1,4 @@
-// Arrays of numbers, packed as src/page/packed.h says: base64, zlib, bytes by planes.
+// Arrays of numbers, packed by src/page/drawn_faces.cpp: base64, zlib, bytes by planes.
 const kinds = {u1: Uint8Array, u2: Uint16Array, u4: Uint32Array, f4: Float32Array};
 
 async function inflated(text) {

@@ -1,4 +1,4 @@
-// False colours as in the pictures of patchlight: blue, cyan, green, yellow, red; grey where a value is not known.
+// False colors as in the pictures of patchlight: blue, cyan, green, yellow, red; gray where a value is not known.
 const stops = [[25, 40, 190], [0, 165, 215], [40, 190, 60], [250, 225, 40], [215, 25, 25]];
 
 function falseColour(share) {
@@ -42,7 +42,7 @@ function quantile(order, share) {
   return order.length > 0 ? order[order.length - 1].value : NaN;
 }
 
-// From 0 to a round number with a twentieth of the lit area above it: lamps are so much brighter than what they light.
+// From 0 to a round number with a twentieth of the lit area above it: lamps are so much brighter than all else.
 function usualScale(order) {
   const high = quantile(order.filter(({value}) => value > 0), 0.95);
   return {low: 0, high: high > 0 ? roundedUp(high) : 1, logarithmic: false};

@@ -22,7 +22,7 @@ function outwardOf(corners, normal) {
 // The faces of the page as triangles, three corners each, around the middle of their bounds. `groups` says which
 // triangles have which opacity and layer. A face with others over it is sunk by the rounding of positions, layer by
 // layer, and a dark one once more. Opaque faces with light have a way `outward` for each corner, in units of 1/63.5:
-// the shader lets neighbours overlap.
+// the shader lets neighbors overlap.
 function triangles(faces, opacityOf, layerOf, dark) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
@@ -73,10 +73,10 @@ function outlines(faces, mesh, chosen) {
   return new Float32Array(ends);
 }
 
-// Where no light is a surface is grey: it is not looked at but where the model is cut.
+// Where no light is a surface is gray: it is not looked at but where the model is cut.
 const unlit = [150, 150, 146];
 
-// Colours of the corners of all triangles, a byte per channel.
+// Colors of the corners of all triangles, a byte per channel.
 function naturalColours(faces, mesh, ofVertices, dark) {
   const colours = new Uint8Array(3 * mesh.vertices.length);
   mesh.vertices.forEach((vertex, k) => {

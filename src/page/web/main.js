@@ -1,4 +1,4 @@
-// From the data of the page to what is seen of it: words and tables first, as they need nothing, then the model.
+// Shows the data of the page: words first, then the model and the tables.
 const data = JSON.parse(byId("data").textContent);
 
 function writeHead() {
@@ -91,7 +91,7 @@ async function unpackedModel() {
   return {...model, looks, sky, faces: {...arrays, low: model.positions.low, high: model.positions.high}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
 }
 
-// What the range does not show.
+// The values beyond the range.
 function extremes(model, order, scale, unit) {
   if (order.length === 0) return "There are no values.";
   const least = order[0], most = order[order.length - 1];
@@ -166,7 +166,7 @@ function listenToView(model, view) {
     const box = view.canvas.getBoundingClientRect();
     choose(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height);
   });
-  // What is seen from outside is exposed for the outside, where the model has both.
+  // Views from outside are exposed for the outside, where the model has both.
   const outdoors = model.looks.findIndex(({name}) => name.endsWith("outside"));
   for (const name of ["home", "above", "outside"]) {
     byId(name).addEventListener("click", () => {

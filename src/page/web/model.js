@@ -1,8 +1,8 @@
-// So far, in pixels, faces reach over their edges: the rounding of a corner that lies on a neighbour's edge leaves gaps
+// So far, in pixels, faces reach over their edges: the rounding of a corner that lies on a neighbor's edge leaves gaps
 // of less.
 const overlap = 0.15;
 
-// Faces that overlap their neighbours, by the rounding of positions and a part of a pixel. `reach` holds both.
+// Faces that overlap their neighbors, by the rounding of positions and a part of a pixel. `reach` holds both.
 function withOverlap(material, reach) {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.reach = reach;
@@ -12,7 +12,7 @@ function withOverlap(material, reach) {
   return material;
 }
 
-// A material for each group of faces, all opaque or as their opacity says: a pane adds what it reflects to what is seen
+// A material for each group of faces, all opaque or as their opacity says: a pane adds its reflection to the light
 // through it. Faces under others are drawn farther away, behind lines all are.
 function surfaceMaterials(groups, reach) {
   const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1 + layer, polygonOffsetUnits: 1 + 4 * layer});
@@ -23,7 +23,7 @@ function surfaceMaterials(groups, reach) {
   return {opaque: all, seeThrough: groups.map((group, k) => group.opacity < 1 ? clear(group) : all[k])};
 }
 
-// Closed solids that are cut: their faces from inside, in one colour, look like the plane of the cut.
+// Closed solids that are cut: their faces from inside, in one color, look like the plane of the cut.
 function fillOf(mesh, faces, filled) {
   const places = [];
   mesh.faceOf.forEach((face, triangle) => {
@@ -49,7 +49,7 @@ function skyDome({directions, inARing}) {
   return sky;
 }
 
-// The model on its canvas. Coordinates inside are metres from the middle of its bounds. Throws where there is no WebGL.
+// The model on its canvas. Coordinates inside are meters from the middle of its bounds. Throws where there is no WebGL.
 function modelView(canvas, model) {
   const {faces, up} = model;
   const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]], (row) => model.rows.layer[row], model.rows.dark);
@@ -101,7 +101,7 @@ function modelView(canvas, model) {
     camera.updateProjectionMatrix();
     view.draw();
   };
-  // With the colours of the sky the model is drawn as it looks, panes clear; without, in false colours.
+  // With the colors of the sky the model is drawn as it looks, panes clear; without, in false colors.
   view.colour = (colours, natural, ofSky) => {
     geometry.attributes.color.array.set(colours);
     geometry.attributes.color.needsUpdate = true;
@@ -123,7 +123,7 @@ function modelView(canvas, model) {
     controls.update();
     view.draw();
   };
-  // Along an axis, in metres of the model; null for no cut.
+  // Along an axis, in meters of the model; null for no cut.
   view.setCut = (axis, at, otherHalf) => {
     const sign = otherHalf ? 1 : -1;
     const normal = new THREE.Vector3().setComponent(axis === null ? 0 : axis, sign);
@@ -141,7 +141,7 @@ function modelView(canvas, model) {
     view.draw();
     return {remove: () => { scene.remove(lines); made.dispose(); view.draw(); }};
   };
-  // What is drawn at a place of the canvas, -1 to 1 from left to right and from below to above.
+  // The face drawn at a place of the canvas, -1 to 1 from left to right and from below to above.
   view.pick = (x, y) => {
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2(x, y), camera);

@@ -1,4 +1,4 @@
-// Maps of grids of sensors: cells in false colours with contour lines through the places of the sensors.
+// Maps of grids of sensors: cells in false colors with contour lines through the places of the sensors.
 function planeOf(axes) {
   const right = new THREE.Vector3(...axes.right), upward = new THREE.Vector3(...axes.above);
   return (numbers, k) => {

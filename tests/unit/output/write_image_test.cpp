@@ -1,6 +1,5 @@
-#include "patchlight/output/write_image.h"
-
 #include "patchlight/base/error.h"
+#include "patchlight/output/write_result.h"
 
 #include "temporary_folder.h"
 

@@ -1,9 +1,8 @@
-#include "output/image/write_lightmap.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/views/picture.h"
 
 #include "glb_parts.h"
+#include "output/image/write_image.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"
 

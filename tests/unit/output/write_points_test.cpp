@@ -1,7 +1,6 @@
-#include "output/vtk/write_points.h"
-
 #include "patchlight/base/error.h"
 
+#include "output/vtk/write_vtk.h"
 #include "scene/sensor_grid.h"
 #include "temporary_folder.h"
 

@@ -1,6 +1,5 @@
-#include "output/vtk/write_problems.h"
-
-#include "output/report/write_survey.h"
+#include "output/report/write_checks.h"
+#include "output/vtk/write_vtk.h"
 #include "scene/repair.h"
 #include "support/scenes.h"
 #include "temporary_folder.h"

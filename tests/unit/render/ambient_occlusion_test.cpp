@@ -1,6 +1,5 @@
-#include "render/ambient_occlusion.h"
-
 #include "quad_scene.h"
+#include "render/render.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,4 @@
-#include "render/glare.h"
-
-#include "views/luminaire_glare.h"
+#include "views/observers.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "render/lens.h"
-
 #include "patchlight/base/error.h"
+
+#include "render/camera.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

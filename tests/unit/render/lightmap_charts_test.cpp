@@ -1,8 +1,7 @@
-#include "render/lightmap_charts.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
+#include "render/lightmap.h"
 #include "support/scenes.h"
 
 #include <algorithm>

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/geometry.h"
 
+#include "scene/photometric_web.h"
+
 #include <optional>
 #include <span>
 
@@ -22,5 +24,10 @@ struct GlareSource {
 /// The unified glare rating 8 log10(0.25 / L_b sum L^2 omega / p^2), CIE 117:1995, of a background luminance in cd/m^2;
 /// nothing without sources or background.
 std::optional<double> unified_glare_rating(std::span<const GlareSource> sources, double background);
+
+/// The area in m^2 of a luminaire's luminous opening (PhotometricWeb::opening) across a unit direction, as CIE 117:1995
+/// takes it for A_p; 0 of a point. Length lies along the zero plane, width across it, height along the aim (IES
+/// LM-63-02).
+double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
 
 }  // namespace patchlight
