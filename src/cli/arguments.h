@@ -6,7 +6,6 @@
 #include "patchlight/views/picture.h"
 
 #include "archive/form_factor_files.h"
-#include "cli/exit_code.h"
 #include "cli/messages.h"
 #include "output/plot/write_sensor_map.h"
 #include "study/compare.h"

@@ -1,12 +1,18 @@
 #include "cli/init_places.h"
 
+#include "patchlight/base/error.h"
 #include "patchlight/scene/sides.h"
 
 #include "accuracy/spaces.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
 #include "gather/sensor_places.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
+#include "output/file/whole_file.h"
+#include "plan/survey.h"
 #include "scene/dark_solids.h"
 #include "visibility/occluder.h"
 
@@ -14,10 +20,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iostream>
 #include <limits>
 #include <optional>
 #include <set>
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace patchlight::cli {
@@ -293,6 +301,26 @@ TriedPlaces new_places(const Scene& lit) {
   }
   tried.notes = notes.on({}).diagnostics;
   return tried;
+}
+
+ExitCode init(const InitArguments& arguments) {
+  std::error_code error;
+  if (std::filesystem::exists(arguments.output, error))
+    throw OutputError(arguments.output.string(), "already exists\nhint: choose another name, or delete it");
+  check_writable(arguments.output);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  for (const Diagnostic& problem : problems_with_size(scene)) print_diagnostic("note", problem);
+  const NewLight light = new_light(scene);
+  const TriedPlaces tried = new_places(with_new_light(scene, light));
+  for (const Diagnostic& note : tried.notes) print_diagnostic("note", note);
+  const std::string text =
+      new_scene_file(scene, light, tried.places, arguments.models, arguments.read.metres_per_unit, arguments.output);
+  const WritingGuard guard;
+  write_bytes(arguments.output, text);
+  std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
+            << " -o result.vtp --json result.json --picture result.png\n"
+            << std::flush;
+  return good;
 }
 
 }  // namespace patchlight::cli

@@ -3,9 +3,8 @@
 #include "patchlight/output/write_result.h"
 
 #include "base/rounded.h"
-#include "cli/add_option.h"
+#include "cli/options.h"
 #include "cli/parse_value.h"
-#include "cli/run_options.h"
 #include "output/image/write_image.h"
 #include "output/image/write_lightmap.h"
 #include "output/vtk/write_points.h"

@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 
 #include <cmath>

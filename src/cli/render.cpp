@@ -1,16 +1,18 @@
+#include "cli/render.h"
+
 #include "patchlight/base/error.h"
+#include "patchlight/output/write_image.h"
 #include "patchlight/views/views.h"
 
 #include "accuracy/spaces.h"
 #include "archive/read_solution.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/output_options.h"
-#include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
@@ -18,8 +20,13 @@
 #include "output/image/write_lightmap.h"
 #include "page/write_page.h"
 #include "pipeline/world.h"
+#include "render/lens.h"
 #include "scene/limits.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -29,6 +36,13 @@
 
 namespace patchlight::cli {
 namespace {
+
+Camera in_metres(Camera camera, double metres_per_unit) {
+  camera.eye *= metres_per_unit;
+  camera.target *= metres_per_unit;
+  camera.height *= metres_per_unit;
+  return camera;
+}
 
 void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& scene) {
   const Reach reach = reach_of(scene);
@@ -83,6 +97,55 @@ std::string write_lightmap_of(const RenderArguments& arguments, const Scene& sce
 }
 
 }  // namespace
+
+std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene) {
+  if (settings.camera) return in_metres(*settings.camera, scene.metres_per_unit);
+  std::string names;
+  for (const Camera& camera : scene.cameras) {
+    if (settings.views.empty() || camera.name == settings.views.front()) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  if (settings.views.empty()) return std::nullopt;
+  throw InputError("--view", "found '" + settings.views.front() + "'; expected a camera of the scene file: " +
+                                 (names.empty() ? "it has none" : "one of " + names));
+}
+
+Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
+                     const Observer& observer) {
+  return take_picture(simulation,
+                      {.camera = camera_for(settings, scene),
+                       .colors = settings.colors,
+                       .width = settings.size[0],
+                       .height = settings.size[1],
+                       .quality = settings.quality,
+                       .error = settings.error,
+                       .most_samples = settings.most_samples},
+                      observer);
+}
+
+std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture) {
+  constexpr double tolerance = 1.1;
+  if (picture.unfinished || !picture.reached_error || *picture.reached_error <= tolerance * settings.error)
+    return std::nullopt;
+  const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
+  std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
+                     " (root mean square), not the " + rounded(100 * settings.error, 2) +
+                     "% of --picture-error, with at most " + std::to_string(settings.most_samples) +
+                     " samples per pixel\nhint: ";
+  // Errors fall with the root of the samples' number at the slowest.
+  const double times = std::pow(*picture.reached_error / settings.error, 2);
+  const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
+  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(wanted));
+  if (samples > static_cast<std::uint32_t>(settings.most_samples))
+    text += "--picture-samples " + std::to_string(samples) + ", or ";
+  return text + "a larger --picture-error";
+}
+
+void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {
+  write_picture(file, picture, picture_up(picture.camera, scene.up, scene.north), bands_of(scene));
+}
+
+void write_error_map(const std::filesystem::path& file, const Picture& picture) { write_picture_errors(file, picture); }
 
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse what cannot be written, or would be lost

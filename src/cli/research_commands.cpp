@@ -1,13 +1,10 @@
 // Options of the commands that examine methods and results: crosscheck, form-factors, compare-solvers, convergence,
 // selftest.
-#include "cli/add_option.h"
-#include "cli/command_options.h"
 #include "cli/distinct_files.h"
-#include "cli/model_options.h"
 #include "cli/option_names.h"
+#include "cli/options.h"
 #include "cli/output_options.h"
 #include "cli/parse_value.h"
-#include "cli/run_options.h"
 #include "plan/check_request.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "base/rounded.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/text_table.h"
 #include "light/photometry.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "input/left_out.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 #include "scene/model_face.h"
 

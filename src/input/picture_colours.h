@@ -1,14 +1,19 @@
 #pragma once
 
 #include "patchlight/light/material.h"
+#include "patchlight/scene/scene.h"
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,5 +79,57 @@ struct PictureColours {
 /// in the folder `confine`, if there is one, have a fault. `model` is the file that names them.
 PictureColours picture_colours(const std::vector<std::filesystem::path>& files, const std::filesystem::path& confine,
                                const std::string& model);
+
+/// Memory that malloc() gave.
+struct FreeMemory {
+  void operator()(void* memory) const { std::free(memory); }
+};
+
+/// The pixels of a picture, row by row from the top, either as codes or as linear numbers.
+struct PicturePixels {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t channels = 0;                            ///< grey, grey and alpha, RGB, or RGB and alpha
+  std::unique_ptr<unsigned char[], FreeMemory> codes;  ///< of sRGB; alpha is linear
+  std::unique_ptr<float[], FreeMemory> linear;         ///< of Radiance's pictures, with Rec. 709 primaries
+  bool has_alpha = false;                              ///< the last channel is one, and it means something
+  std::string fault;  ///< why it could not be decoded, "is cut off"; then there is nothing else
+};
+
+/// Decodes PNG, JPEG, BMP and TGA of at most 8192 x 8192 pixels and Radiance HDR of at most 4096 x 8192. Of 16 bits the
+/// upper eight are taken. Takes three to four bytes a pixel twice, of 16 bits and of HDR three times as much.
+PicturePixels decoded_pixels(std::string_view picture);
+
+/// What a picture of 1 in red, in green and in blue alone reflects when it is multiplied with a colour of three bands.
+std::array<Spectrum, 3> primaries_times(const Spectrum& factor);
+
+/// The maps of faces into pictures, one after the other, and what is wrong with them.
+class MappedFaces {
+ public:
+  explicit MappedFaces(std::string file) : file_(std::move(file)) {}
+
+  /// The index of a new map for a face with these corners, m, which lie there in its picture; that of the affine map
+  /// that comes nearest, where it has more than three corners. no_texture_map for a face without area, and for one
+  /// whose places are not known: there are none, or they are not finite. `line` 0: not known.
+  std::uint32_t add(std::span<const Point> corners, std::span<const Eigen::Vector2d> places, std::uint32_t line);
+
+  const std::vector<TextureMap>& maps() const { return maps_; }
+
+  /// How many faces have no place in their picture, or a bent one, and which is the first.
+  Diagnostics notes() const;
+
+ private:
+  struct Faces {
+    std::size_t count = 0;
+    std::uint32_t first_line = 0;
+  };
+  static void count(Faces& faces, std::uint32_t line);
+  std::string sentence(const Faces& faces, const std::string& what) const;
+
+  std::string file_;
+  std::vector<TextureMap> maps_;
+  Faces without_;
+  Faces bent_;
+};
 
 }  // namespace patchlight

@@ -1,5 +1,6 @@
 #include "input/round_shapes.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -86,6 +87,17 @@ std::uint32_t add_circle(FacetedShape& shape, const Point& centre, const Eigen::
   return first;
 }
 
+// Cosine and sine of an angle in degrees, exact for quarter turns.
+std::array<double, 2> cosine_and_sine(double degrees) {
+  const double turn = std::remainder(degrees, 360);
+  if (turn == 0) return {1, 0};
+  if (turn == 90) return {0, 1};
+  if (turn == -90) return {0, -1};
+  if (std::abs(turn) == 180) return {-1, 0};
+  const double angle = turn * std::numbers::pi / 180;
+  return {std::cos(angle), std::sin(angle)};
+}
+
 }  // namespace
 
 FacetedShape faceted_sphere(const Point& centre, double radius) {
@@ -122,6 +134,14 @@ FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inne
   for (std::uint32_t k = 0; k < round_sides; ++k) disk.push_back(far + k);
   shape.faces.push_back(std::move(disk));
   return shape;
+}
+
+// R = c I + s [k]_x + (1 - c) k k^T: Rodrigues' formula.
+Eigen::Matrix3d turned_about(const Vector& axis, double degrees) {
+  const auto [c, s] = cosine_and_sine(degrees);
+  Eigen::Matrix3d cross;
+  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return c * Eigen::Matrix3d::Identity() + s * cross + (1 - c) * axis * axis.transpose();
 }
 
 }  // namespace patchlight

@@ -28,4 +28,7 @@ FacetedShape faceted_cone(const Point& a, const Point& b, double radius_a, doubl
 /// that the area is pi (r_outer^2 - r_inner^2).
 FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inner, double outer);
 
+/// The rotation about a unit vector, anticlockwise seen from its tip; exact for quarter turns about an axis.
+Eigen::Matrix3d turned_about(const Vector& axis, double degrees);
+
 }  // namespace patchlight

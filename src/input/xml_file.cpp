@@ -2,7 +2,6 @@
 
 #include "patchlight/base/error.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>

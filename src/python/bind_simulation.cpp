@@ -6,7 +6,7 @@
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/arguments.h"
-#include "cli/picture.h"
+#include "cli/render.h"
 #include "cli/summary.h"
 #include "light/photometry.h"
 #include "output/report/report_json.h"

@@ -1,5 +1,3 @@
-#include "input/building/read_gbxml.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
@@ -9,8 +7,8 @@
 #include "input/building/cut_openings.h"
 #include "input/left_out.h"
 #include "input/materials.h"
+#include "input/read_model.h"
 #include "input/text.h"
-#include "input/unique_names.h"
 #include "input/xml_file.h"
 
 #include <algorithm>

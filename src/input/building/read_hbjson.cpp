@@ -1,5 +1,3 @@
-#include "input/building/read_hbjson.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 
@@ -10,6 +8,7 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/radiance/radiance_material.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <algorithm>

@@ -1,20 +1,20 @@
-#include "input/collada/read_collada.h"
-
 #include "patchlight/base/error.h"
+#include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "files/reason.h"
 #include "files/sha256.h"
-#include "input/collada/assimp_pictures.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
+#include "input/read_model.h"
 #include "input/scene_bytes.h"
-#include "input/stated_panes.h"
 #include "input/text.h"
-#include "input/texture_maps.h"
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -23,6 +23,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 #include <string>
@@ -31,6 +32,53 @@
 
 namespace patchlight {
 namespace {
+
+// The picture of the diffuse colour of one of assimp's materials.
+struct AssimpPicture {
+  std::string file;      // beside the model, as it names it
+  unsigned int set = 0;  // of the meshes' coordinates in pictures
+  std::array<Wrap, 2> wrap{};
+};
+
+// By the index of the material.
+using AssimpPictures = std::map<unsigned int, AssimpPicture>;
+
+Wrap wrap_of_mode(aiTextureMapMode mode) {
+  if (mode == aiTextureMapMode_Mirror) return Wrap::mirror;
+  return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp : Wrap::repeat;
+}
+
+std::optional<AssimpPicture> diffuse_picture(const aiMaterial& material, const std::filesystem::path& folder) {
+  aiString name;
+  unsigned int set = 0;
+  std::array<aiTextureMapMode, 3> modes = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name, nullptr, &set, nullptr, nullptr, modes.data()) !=
+      aiReturn_SUCCESS)
+    return std::nullopt;
+  std::string file = name.C_Str();
+  std::replace(file.begin(), file.end(), '\\', '/');
+  return AssimpPicture{(folder / file).string(), set, {wrap_of_mode(modes[0]), wrap_of_mode(modes[1])}};
+}
+
+AssimpPictures diffuse_pictures(const aiScene& model, const std::filesystem::path& folder) {
+  AssimpPictures pictures;
+  for (unsigned int m = 0; m < model.mNumMeshes; ++m) {
+    const unsigned int material = model.mMeshes[m]->mMaterialIndex;
+    const std::optional<AssimpPicture> picture = diffuse_picture(*model.mMaterials[material], folder);
+    if (picture) pictures.emplace(material, *picture);
+  }
+  return pictures;
+}
+
+std::vector<Eigen::Vector2d> places_in(const AssimpPicture& picture, const aiMesh& mesh) {
+  std::vector<Eigen::Vector2d> places;
+  if (picture.set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !mesh.HasTextureCoords(picture.set)) return places;
+  for (unsigned int v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D& place = mesh.mTextureCoords[picture.set][v];
+    places.emplace_back(place.x, 1.0 - place.y);
+  }
+  return places;
+}
 
 // A pane has the mean of its picture.
 Material painted(Material material, const Spectrum& mean, const std::shared_ptr<const Texture>& texture) {

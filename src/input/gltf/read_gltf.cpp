@@ -1,5 +1,3 @@
-#include "input/gltf/read_gltf.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
@@ -7,14 +5,11 @@
 #include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/gltf/gltf_model.h"
-#include "input/gltf/gltf_texture.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
+#include "input/read_model.h"
 #include "input/scene_bytes.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
-#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <array>

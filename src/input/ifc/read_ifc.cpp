@@ -1,5 +1,3 @@
-#include "input/ifc/read_ifc.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
@@ -9,7 +7,7 @@
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/stated_panes.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <algorithm>

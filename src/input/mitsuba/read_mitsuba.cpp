@@ -1,5 +1,3 @@
-#include "input/mitsuba/read_mitsuba.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
@@ -8,16 +6,10 @@
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/mesh/read_ply.h"
 #include "input/mitsuba/mitsuba_file.h"
-#include "input/mitsuba/mitsuba_spectrum.h"
-#include "input/obj/read_obj.h"
-#include "input/reading_limits.h"
+#include "input/read_model.h"
 #include "input/round_shapes.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
 #include "input/text.h"
-#include "input/unique_names.h"
 #include "scene/model_face.h"
 
 #include <algorithm>

@@ -1,20 +1,14 @@
-#include "input/obj/read_obj.h"
-
 #include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 
 #include "base/near_match.h"
 #include "base/rounded.h"
 #include "files/sha256.h"
-#include "input/at_line.h"
 #include "input/materials.h"
-#include "input/obj/read_mtl.h"
-#include "input/obj/scan_obj.h"
+#include "input/obj/parse_obj.h"
 #include "input/picture_colours.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
+#include "input/read_model.h"
 #include "input/text.h"
-#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,5 @@
 #include "input/radiance/radiance_text.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>

@@ -1,18 +1,14 @@
-#include "input/radiance/read_radiance.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "files/sha256.h"
-#include "input/at_line.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/radiance/radiance_genbox.h"
 #include "input/radiance/radiance_material.h"
+#include "input/radiance/radiance_programs.h"
 #include "input/radiance/radiance_text.h"
-#include "input/radiance/radiance_xform.h"
-#include "input/reading_limits.h"
+#include "input/read_model.h"
 #include "input/round_shapes.h"
 #include "input/text.h"
 
@@ -203,7 +199,7 @@ class RadianceReader {
     top_.placement.linear() *= metres_per_unit;
   }
 
-  RadianceModel model(const fs::path& file) && {
+  FileModel model(const fs::path& file) && {
     scene_.file = file.string();
     scene_.up = Vector::UnitZ();
     scene_.up_stated = true;
@@ -445,8 +441,8 @@ class RadianceReader {
 
 }  // namespace
 
-RadianceModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
-                            RadianceModifiers known) {
+FileModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
+                        RadianceModifiers known) {
   return RadianceReader(metres_per_unit, confine, std::move(known)).model(file);
 }
 

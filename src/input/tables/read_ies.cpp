@@ -1,8 +1,7 @@
-#include "input/tables/read_ies.h"
-
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
 
 #include <algorithm>

@@ -3,10 +3,8 @@
 #include "files/sha256.h"
 #include "input/text.h"
 #include "input/toml/scene_file.h"
-#include "input/toml/toml_lights.h"
-#include "input/toml/toml_models.h"
 #include "input/toml/toml_sensors.h"
-#include "input/toml/toml_spectrum.h"
+#include "input/toml/toml_tables.h"
 #include "input/toml/toml_value.h"
 #include "scene/projection.h"
 

@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 
-#include "input/chosen_faces.h"
+#include "input/material_settings.h"
 #include "input/scene_lights.h"
 
 #include <filesystem>

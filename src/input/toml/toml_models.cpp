@@ -1,11 +1,9 @@
-#include "input/toml/toml_models.h"
-
 #include "patchlight/base/error.h"
 
 #include "input/material_settings.h"
+#include "input/round_shapes.h"
 #include "input/text.h"
-#include "input/toml/toml_spectrum.h"
-#include "input/toml/turned_about.h"
+#include "input/toml/toml_tables.h"
 #include "light/photometry.h"
 #include "light/spectra.h"
 

@@ -6,7 +6,7 @@
 #include "base/rounded.h"
 #include "input/left_out.h"
 #include "input/material_settings.h"
-#include "input/tables/read_points.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
 #include "scene/dark_solids.h"
 #include "scene/extent.h"

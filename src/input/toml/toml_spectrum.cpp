@@ -1,10 +1,9 @@
-#include "input/toml/toml_spectrum.h"
-
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
-#include "input/tables/read_spectrum.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
+#include "input/toml/toml_tables.h"
 #include "light/spectra.h"
 #include "scene/spectral_bands.h"
 

@@ -1,10 +1,10 @@
-#include "input/mesh/read_ply.h"
-
 #include "patchlight/base/error.h"
 
+#include "base/near_match.h"
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -20,6 +20,89 @@
 
 namespace patchlight {
 namespace {
+
+struct Statement {
+  std::uint32_t line = 0;
+  std::vector<std::string_view> words;
+};
+
+std::vector<Statement> statements_of(const std::vector<TextLine>& lines) {
+  std::vector<Statement> statements;
+  for (const TextLine& line : lines) {
+    Statement statement = {line.number, words_before_comment(line.text)};
+    if (!statement.words.empty()) statements.push_back(std::move(statement));
+  }
+  return statements;
+}
+
+// The k-th word as a whole number below `limit`.
+std::uint32_t whole_number(const Statement& statement, std::size_t k, std::uint32_t limit, const std::string& file) {
+  const std::string_view word = k < statement.words.size() ? statement.words[k] : std::string_view();
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc() || end != word.data() + word.size() || value >= limit) {
+    throw InputError(at_line(file, statement.line), "found '" + std::string(word) + "' as number " +
+                                                        std::to_string(k + 1) + "; expected a whole number from 0 to " +
+                                                        std::to_string(limit - 1));
+  }
+  return value;
+}
+
+Point off_vertex(const Statement& statement, const std::string& file) {
+  Point point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto value = axis < statement.words.size() ? finite_number(statement.words[axis]) : std::nullopt;
+    if (!value) throw InputError(at_line(file, statement.line), "expected three finite numbers: a vertex x y z");
+    point[static_cast<Eigen::Index>(axis)] = *value;
+  }
+  return point;
+}
+
+Polygon face(const Statement& statement, std::size_t vertices, const std::string& file) {
+  const std::uint32_t corners = whole_number(statement, 0, ~std::uint32_t{0}, file);
+  if (corners >= statement.words.size()) {
+    throw InputError(at_line(file, statement.line),
+                     "this face has fewer than the " + std::to_string(corners) + " corners it promises");
+  }
+  Polygon polygon;
+  polygon.line = statement.line;
+  for (std::size_t k = 1; k <= corners; ++k) {
+    polygon.corners.push_back(whole_number(statement, k, static_cast<std::uint32_t>(vertices), file));
+  }
+  return polygon;
+}
+
+// The statements without the key word, and the numbers of vertices and faces taken off the first of the rest.
+struct OffHeader {
+  std::uint32_t vertices = 0;
+  std::uint32_t faces = 0;
+  std::size_t first = 0;  // statement after the header
+};
+
+OffHeader header_of(std::vector<Statement>& statements, const std::string& file) {
+  constexpr std::uint32_t most = ~std::uint32_t{0};
+  const std::string_view key = statements.empty() ? std::string_view() : statements[0].words[0];
+  const bool is_off = key == "OFF" || key == "COFF" || key == "NOFF" || key == "CNOFF";
+  if (!is_off || (statements[0].words.size() > 1 && statements[0].words[1] == "BINARY")) {
+    throw InputError(file,
+                     "is not an OFF file in ASCII: expected the word OFF (or COFF, NOFF, CNOFF) at its beginning");
+  }
+  statements[0].words.erase(statements[0].words.begin());
+  OffHeader header;
+  header.first = statements[0].words.empty() ? 1 : 0;
+  if (header.first >= statements.size())
+    throw InputError(file, "ends after the word OFF; expected the numbers of vertices and faces");
+  header.vertices = whole_number(statements[header.first], 0, most, file);
+  header.faces = whole_number(statements[header.first], 1, most, file);
+  ++header.first;
+  const std::size_t lines = statements.size() - header.first;
+  if (lines < header.vertices || lines - header.vertices < header.faces) {
+    throw InputError(file, "promises " + std::to_string(header.vertices) + " vertices and " +
+                               std::to_string(header.faces) + " faces, but has only " + std::to_string(lines) +
+                               " lines for them");
+  }
+  return header;
+}
 
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 
@@ -296,7 +379,121 @@ Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
   return left_out.on(std::move(scene));
 }
 
+// A binary file: 80 bytes of comment, the number of triangles, and for each its normal, three corners (all floats) and
+// two bytes more. Numbers are little-endian, as on the machines this runs on.
+constexpr std::size_t header_bytes = 84;
+constexpr std::size_t triangle_bytes = 50;
+constexpr std::size_t normal_bytes = 12;
+
+std::size_t triangles_promised(std::string_view bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + header_bytes - sizeof count, sizeof count);
+  return count;
+}
+
+// Binary files may begin with "solid" too; their length tells. Some writers use capitals.
+bool is_binary(std::string_view bytes) {
+  if (bytes.size() < header_bytes) return false;
+  return bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes) ||
+         !in_lower_case(std::string(trimmed(bytes.substr(0, header_bytes)))).starts_with("solid");
+}
+
+Polygon polygon_of(std::uint32_t first, std::uint32_t corners, std::uint32_t group, std::uint32_t line) {
+  Polygon polygon;
+  for (std::uint32_t k = 0; k < corners; ++k) polygon.corners.push_back(first + k);
+  polygon.group = group;
+  polygon.line = line;
+  return polygon;
+}
+
+Scene with_binary(Scene scene, std::string_view bytes) {
+  const std::size_t count = triangles_promised(bytes);
+  if ((bytes.size() - header_bytes) / triangle_bytes < count) {
+    throw InputError(scene.file, "promises " + std::to_string(count) + " triangles, but ends after " +
+                                     std::to_string((bytes.size() - header_bytes) / triangle_bytes));
+  }
+  scene.groups.emplace_back("solid");
+  for (std::size_t t = 0; t < count; ++t) {
+    scene.polygons.push_back(polygon_of(static_cast<std::uint32_t>(scene.vertices.size()), 3, 0, 0));
+    std::array<float, 9> values{};
+    std::memcpy(values.data(), bytes.data() + header_bytes + triangle_bytes * t + normal_bytes, sizeof values);
+    for (std::size_t k = 0; k < 9; k += 3) {
+      scene.vertices.emplace_back(scene.metres_per_unit * Point(values[k], values[k + 1], values[k + 2]));
+    }
+  }
+  return scene;
+}
+
+Point stl_vertex(const std::vector<std::string_view>& statement, const std::string& where) {
+  Point point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto value = axis + 1 < statement.size() ? finite_number(statement[axis + 1]) : std::nullopt;
+    if (!value) throw InputError(where, "expected three finite numbers after vertex");
+    point[static_cast<Eigen::Index>(axis)] = *value;
+  }
+  return point;
+}
+
+Scene with_ascii(Scene scene, const std::string& text) {
+  std::size_t first = 0;    // vertex of the loop at hand
+  std::uint32_t begin = 0;  // its line
+  bool is_whole = true;
+  LeftOut left_out;
+  for (const TextLine& line : logical_lines(text)) {
+    const std::vector<std::string_view> statement = words(line.text);
+    if (statement.empty()) continue;
+    const std::string where = scene.file + ":" + std::to_string(line.number);
+    const std::string word = in_lower_case(std::string(statement[0]));
+    if (word == "solid") {
+      scene.groups.emplace_back(after_first_word(line.text));
+    } else if (scene.groups.empty()) {
+      throw InputError(where, "is not an STL file: expected the word solid at its beginning");
+    } else if (word == "outer") {
+      first = scene.vertices.size();
+      begin = line.number;
+      is_whole = false;
+    } else if (word == "vertex") {
+      scene.vertices.emplace_back(scene.metres_per_unit * stl_vertex(statement, where));
+    } else if (word == "endloop") {
+      const auto corners = static_cast<std::uint32_t>(scene.vertices.size() - first);
+      const auto group = static_cast<std::uint32_t>(scene.groups.size() - 1);
+      if (corners < 3)
+        left_out.lose_face(too_few_corners, scene.groups.back(), {.line = begin});
+      else
+        scene.polygons.push_back(polygon_of(static_cast<std::uint32_t>(first), corners, group, begin));
+      first = scene.vertices.size();
+      is_whole = true;
+    }
+  }
+  if (!is_whole) throw InputError(scene.file + ":" + std::to_string(begin), "the file ends within this facet");
+  return left_out.on(std::move(scene));
+}
+
 }  // namespace
+
+Scene read_off(const std::filesystem::path& file, double metres_per_unit) {
+  const std::string text = read_text(file, file.string(), "the model file");
+  const std::vector<TextLine> lines = logical_lines(text);
+  std::vector<Statement> statements = statements_of(lines);
+  const OffHeader header = header_of(statements, file.string());
+
+  Scene scene = scene_without_materials(file.string(), metres_per_unit);
+  scene.groups.push_back(file.stem().string());
+  for (std::size_t k = 0; k < header.vertices; ++k) {
+    scene.vertices.emplace_back(metres_per_unit * off_vertex(statements[header.first + k], file.string()));
+  }
+  LeftOut left_out;
+  for (std::size_t k = 0; k < header.faces; ++k) {
+    Polygon polygon = face(statements[header.first + header.vertices + k], header.vertices, file.string());
+    if (polygon.corners.size() < 3)
+      left_out.lose_face(too_few_corners, scene.groups[0], {.line = polygon.line});
+    else
+      scene.polygons.push_back(std::move(polygon));
+  }
+  scene = left_out.on(std::move(scene));
+  scene.sha256 = sha256({&text, 1});
+  return scene;
+}
 
 Scene read_ply(const std::filesystem::path& file, double metres_per_unit) {
   const std::string bytes = read_text(file, file.string(), "the model file");
@@ -319,6 +516,14 @@ Scene read_ply(const std::filesystem::path& file, double metres_per_unit) {
                        "a face has a corner that names no vertex\nhint: export the model again");
     }
   }
+  scene.sha256 = sha256({&bytes, 1});
+  return scene;
+}
+
+Scene read_stl(const std::filesystem::path& file, double metres_per_unit) {
+  const std::string bytes = read_text(file, file.string(), "the model file");
+  Scene scene = scene_without_materials(file.string(), metres_per_unit);
+  scene = is_binary(bytes) ? with_binary(std::move(scene), bytes) : with_ascii(std::move(scene), bytes);
   scene.sha256 = sha256({&bytes, 1});
   return scene;
 }
