@@ -25,15 +25,13 @@
 namespace patchlight::cli {
 namespace {
 
-// More groups than fit on a line are left to the CSV.
-constexpr std::size_t most_columns = 12;
-
 bool is_one_file(const FormFactorArguments& arguments) {
   return arguments.output.extension() == ".npy" || arguments.output.extension() == ".mtx";
 }
 
+// More groups than fit on a line are left to the CSV.
 std::string table(const GroupFactors& groups) {
-  if (groups.names.size() > most_columns) {
+  if (groups.names.size() > 12) {
     return std::to_string(groups.names.size()) + " " + name_of(groups.by) + "s: too many to print\n";
   }
   std::size_t width = 0;
@@ -50,7 +48,7 @@ std::string table(const GroupFactors& groups) {
   return text.str();
 }
 
-// What the figures of a group are shares of.
+// The reference of a group's figures.
 Diagnostics note_on_groups(const KeptSides& sides) {
   std::size_t both = 0;
   for (std::size_t p = 0; p < sides.front.size(); ++p) both += sides.front[p] != 0 && sides.back[p] != 0 ? 1 : 0;
@@ -75,7 +73,7 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   return text.str();
 }
 
-// What is told of them.
+// The output about form factors that are written.
 struct Written {
   Diagnostics notes;
   std::string summary;
@@ -177,7 +175,7 @@ void write_page_of_comparison(const ComparisonArguments& arguments, const Scene&
                               .comparison = &comparison});
 }
 
-// An error that is not above what the reference is good to is told with a question mark.
+// An error that is not above what the reference is good to has a question mark.
 std::string judged(double error, const Study& study) {
   return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");
 }

@@ -39,7 +39,7 @@ std::size_t sequence_length(std::string_view text) {
              : 0;
 }
 
-// One character, and what may be seen of it.
+// One character as it may appear on a terminal.
 std::string visible(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1 && (first < 0x20 || first == 0x7F)) return escaped("\\u%04x", first);

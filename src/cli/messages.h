@@ -10,7 +10,7 @@
 
 namespace patchlight::cli {
 
-/// What the tool returns to the shell.
+/// The codes that the tool returns to the shell.
 enum ExitCode : int {
   good = 0,
   usage_error = 1,        ///< the command line cannot be understood
@@ -24,9 +24,6 @@ enum ExitCode : int {
   internal_error = 70,    ///< a defect of patchlight
   signal_base = 128       ///< 128 + n: stopped by signal n, e.g. 130 by Ctrl-C; no file is half-written
 };
-
-/// How much the tool says.
-enum class Verbosity { quiet, normal, verbose };
 
 /// Prints "patchlight: KIND: TEXT" on stderr, with the names of options in place of fields of the library. Each part of
 /// the text that begins with "hint: " on a new line has a line of its own; other line breaks become spaces.

@@ -8,7 +8,7 @@
 
 namespace patchlight::cli {
 
-/// What the library calls a field, perhaps with its value, and the option that fills it.
+/// A field of the library, perhaps with its value, and the option that fills it.
 struct OptionName {
   std::string field;
   std::string option;

@@ -1,14 +1,12 @@
 #include "cli/options.h"
 
-#include "base/rounded.h"
-#include "cli/arguments.h"
-#include "cli/parse_value.h"
 #include "light/solar_position.h"
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <regex>
 #include <tuple>
 #include <utility>
@@ -16,26 +14,33 @@
 namespace patchlight::cli {
 namespace {
 
-void add_choice_options(CLI::App& command, ModelOptions& options) {
-  add_list(command, "--only", options.only);
-  add_list(command, "--exclude", options.leave_out);
-  add(command, "--simplify", [&options](const std::string& text) { options.detail = length("--simplify", text); });
-  add(command, "--maintenance-factor", [&options](const std::string& text) {
-    options.maintenance_factor = text.ends_with('%')
-                                     ? share("--maintenance-factor", text)
-                                     : number("--maintenance-factor", text, "a number above 0 and up to 1, e.g. 0.8",
-                                              [](double x) { return x > 0 && x <= 1; });
-    if (*options.maintenance_factor > 1) throw refusal("--maintenance-factor", text, "at most 100%");
-  });
-  add(command, "--bands", [&options](const std::string& text) { options.bands = text; });
-  add(command, "--color-error", [&options](const std::string& text) {
-    options.color_error =
-        number("--color-error", text, "a color difference above 0", [](double value) { return value > 0; });
-  });
-  add_flag(command, "--no-merge", [&options] { options.keep_faces = true; });
+double maintenance_factor(const std::string& option, const std::string& text) {
+  if (!text.ends_with('%'))
+    return number(option, text, "a number above 0 and up to 1, e.g. 0.8", [](double x) { return x > 0 && x <= 1; });
+  const double factor = share(option, text);
+  if (factor > 1) throw refusal(option, text, "at most 100%");
+  return factor;
 }
 
-// What --bands and --color-error ask for, if they do.
+double above_zero(const std::string& option, const std::string& text) {
+  return number(option, text, "a color difference above 0", [](double value) { return value > 0; });
+}
+
+double from_0_to_1(const std::string& option, const std::string& text) {
+  return number(option, text, "0 to 1", [](double value) { return value >= 0 && value <= 1; });
+}
+
+void add_choice_options(CLI::App& command, ModelOptions& options) {
+  add_list(command, "--only", options.read.only);
+  add_list(command, "--exclude", options.read.leave_out);
+  add(command, "--simplify", options.read.detail, length);
+  add(command, "--maintenance-factor", options.read.maintenance_factor, maintenance_factor);
+  add(command, "--bands", [&options](const std::string& text) { options.bands = text; });
+  add(command, "--color-error", options.color_error, above_zero);
+  add_flag(command, "--no-merge", options.read.keep_faces);
+}
+
+// The bands of --bands and --color-error, if given.
 std::optional<BandsAsked> bands_asked(const ModelOptions& options) {
   if (options.bands.empty() && !options.color_error) return std::nullopt;
   BandsAsked asked;
@@ -148,11 +153,15 @@ void take_weather(DaylightSetting& daylight, const std::string& text) {
   daylight.weather = DaylightSetting::WeatherFile{file, part(1), part(2), part(3)};
 }
 
-void add_rays_option(CLI::App& command, Request& request) {
-  add(command, "--rays", [&request](const std::string& text) {
-    request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
-    if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
-  });
+void add_up_option(CLI::App& command, std::optional<Vector>& up) {
+  add_choice<Vector>(command, "--up", up, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
+}
+
+void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
+  add(command, "--sky", [&daylight](const std::string& text) { take_sky(daylight, text); });
+  add(command, "--sun", [&daylight](const std::string& text) { take_sun(daylight, text); });
+  add(command, "--ground", daylight.ground_reflectance, from_0_to_1);
+  add(command, "--weather", [&daylight](const std::string& text) { take_weather(daylight, text); });
 }
 
 void add_effects(CLI::App& command, const std::string& option, const std::vector<Effect>& effects,
@@ -169,148 +178,84 @@ void add_effects(CLI::App& command, const std::string& option, const std::vector
 }  // namespace
 
 void add_file_options(CLI::App& command, ModelOptions& options) {
+  std::vector<std::pair<std::string, std::string>> formats;
+  for (const std::string& format : readable_formats()) formats.emplace_back(format, format);
   add_list(command, "MODEL", options.models);
-  add(command, "--format", [&options](const std::string& text) {
-    std::vector<std::pair<std::string, std::string>> allowed;
-    for (const std::string& format : readable_formats()) allowed.emplace_back(format, format);
-    options.format = choice<std::string>("--format", text, allowed);
-  });
-  add(command, "--unit", [&options](const std::string& text) { options.metres_per_unit = unit_length(text); });
-  add_up_option(command, options.up);
-  add(command, "--confine", [&options](const std::string& text) {
-    if (text.empty()) throw refusal("--confine", text, "the name of a folder");
-    options.confine = text;
-  });
+  add_choice<std::string>(command, "--format", options.read.format, formats);
+  add_choice<double>(command, "--unit", options.read.metres_per_unit, length_units());
+  add_up_option(command, options.read.up);
+  add_name(command, "--confine", options.read.confine, "the name of a folder");
 }
 
 void add_model_options(CLI::App& command, ModelOptions& options) {
   add_file_options(command, options);
-  add_set_option(command, options.settings);
+  add_list(command, "--set", options.settings);
   add_choice_options(command, options);
-  add_daylight_options(command, options.daylight);
+  add_daylight_options(command, options.read.daylight);
 }
 
-void add_up_option(CLI::App& command, std::optional<Vector>& up) {
-  add(command, "--up", [&up](const std::string& text) {
-    up = choice<Vector>("--up", text, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
-  });
+void add_light_options(CLI::App& command, ModelOptions& options) {
+  add_list(command, "--set", options.settings);
+  add_up_option(command, options.read.up);
+  add_daylight_options(command, options.read.daylight);
 }
 
-void add_set_option(CLI::App& command, std::vector<std::string>& settings) { add_list(command, "--set", settings); }
-
-void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
-  add(command, "--sky", [&daylight](const std::string& text) { take_sky(daylight, text); });
-  add(command, "--sun", [&daylight](const std::string& text) { take_sun(daylight, text); });
-  add(command, "--ground", [&daylight](const std::string& text) {
-    daylight.ground_reflectance =
-        number("--ground", text, "0 to 1", [](double value) { return value >= 0 && value <= 1; });
-  });
-  add(command, "--weather", [&daylight](const std::string& text) { take_weather(daylight, text); });
-}
-
-std::vector<std::filesystem::path> model_files(const ModelOptions& options) {
+void take_model(const ModelOptions& options, ModelArguments& arguments) {
   for (auto model = options.models.begin(); model != options.models.end(); ++model) {
     if (std::find(options.models.begin(), model, *model) == model) continue;
     throw UsageError("MODEL: found '" + *model + "' twice; expected every model once");
   }
-  return {options.models.begin(), options.models.end()};
+  arguments.models.assign(options.models.begin(), options.models.end());
+  arguments.read = options.read;
+  for (const std::string& text : options.settings) arguments.read.settings.push_back(parse_material_setting(text));
+  arguments.read.bands = bands_asked(options);
 }
 
-ReadOptions read_options(const ModelOptions& options) {
-  ReadOptions read;
-  read.metres_per_unit = options.metres_per_unit;
-  read.format = options.format;
-  read.up = options.up;
-  read.confine = options.confine;
-  read.only = options.only;
-  read.leave_out = options.leave_out;
-  read.detail = options.detail;
-  read.maintenance_factor = options.maintenance_factor;
-  read.keep_faces = options.keep_faces;
-  read.daylight = options.daylight;
-  read.settings = material_settings(options.settings);
-  read.bands = bands_asked(options);
-  return read;
+void take_model(const ModelOptions& options, RunArguments& arguments) {
+  take_model(options, static_cast<ModelArguments&>(arguments));
+  std::optional<double>& max_edge = arguments.request.mesh.max_edge;
+  if (max_edge && !options.max_edge_in_metres) *max_edge *= options.read.metres_per_unit.value_or(1);
 }
 
-std::vector<MaterialSetting> material_settings(const std::vector<std::string>& texts) {
-  std::vector<MaterialSetting> settings;
-  for (const std::string& text : texts) settings.push_back(parse_material_setting(text));
-  return settings;
-}
-
-Request in_metres(const RequestGiven& given, double metres_per_unit) {
-  Request request = given;
-  if (request.mesh.max_edge && !given.max_edge_in_metres) *request.mesh.max_edge *= metres_per_unit;
-  return request;
-}
-
-void add_sides_option(CLI::App& command, Request& request) {
-  add(command, "--sides", [&request](const std::string& text) { request.mesh.sides = sides_named(text); });
-}
-
-Sides sides_named(const std::string& text) {
-  return choice<Sides>("--sides", text, {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
-}
-
-void add_patch_options(CLI::App& command, RequestGiven& request) {
-  add(command, "--max-edge", [&request](const std::string& text) {
-    request.max_edge_in_metres = !to_number(text);
+void add_patch_options(CLI::App& command, ModelOptions& options, Request& request) {
+  add(command, "--max-edge", [&options, &request](const std::string& text) {
+    options.max_edge_in_metres = !to_number(text);
     request.mesh.max_edge = length("--max-edge", text);
   });
-  add(command, "--patches", [&request](const std::string& text) {
-    request.mesh.patches = whole_number("--patches", text, 1, 1'000'000'000);
-  });
-  add_flag(command, "--no-contact-lines", [&request] { request.mesh.contact_lines = false; });
+  add_whole(command, "--patches", request.mesh.patches, 1, 1'000'000'000);
+  add_flag(command, "--no-contact-lines", request.mesh.contact_lines, false);
 }
 
 void add_graded_option(CLI::App& command, Request& request) {
-  add_flag(command, "--graded-edges", [&request] { request.mesh.graded_edges = true; });
+  add_flag(command, "--graded-edges", request.mesh.graded_edges);
 }
 
 void add_refinement_options(CLI::App& command, Request& request) {
-  CLI::Option* const error = add(command, "--accuracy", [&request](const std::string& text) {
-    request.accuracy.relative_error = relative_error("--accuracy", text);
-  });
-  CLI::Option* const time = add(command, "--time-limit", [&request](const std::string& text) {
-    request.accuracy.seconds = seconds("--time-limit", text);
-  });
+  CLI::Option* const error = add(command, "--accuracy", request.accuracy.relative_error, relative_error);
+  CLI::Option* const time = add(command, "--time-limit", request.accuracy.seconds, seconds);
   add_list(command, "--focus", request.accuracy.interest);
   request.accuracy.local_cuts = true;
-  add_flag(command, "--no-refine", [&request] { request.accuracy.local_cuts = false; })
-      ->excludes(error)
-      ->excludes(time);
+  add_flag(command, "--no-refine", request.accuracy.local_cuts, false)->excludes(error)->excludes(time);
 }
 
 void add_accuracy_options(CLI::App& command, Request& request) {
   add_refinement_options(command, request);
   request.accuracy.cheap_error_bars = true;
-  CLI::Option* const bars = add_flag(command, "--error-bars", [&request] { request.accuracy.error_bars = true; });
-  add_flag(command, "--no-error-bars", [&request] { request.accuracy.cheap_error_bars = false; })->excludes(bars);
+  CLI::Option* const bars = add_flag(command, "--error-bars", request.accuracy.error_bars);
+  add_flag(command, "--no-error-bars", request.accuracy.cheap_error_bars, false)->excludes(bars);
 }
 
-std::optional<std::string> note_on_accuracy(const Request& request) {
-  if (!request.accuracy.relative_error) return std::nullopt;
-  return "refining until the estimated error of mesh, form factors and solver is below " +
-         percent(*request.accuracy.relative_error, 4) + " %";
-}
-
-void add_method_options(CLI::App& command, Request& request) {
-  add(command, "--method", [&request](const std::string& text) {
-    request.assembly.storage = choice<Storage>("--method", text,
-                                               {{"auto", Storage::automatic},
-                                                {"pairs", Storage::tiles},
-                                                {"rays", Storage::rays},
-                                                {"on-demand", Storage::on_demand}});
+void add_method_options(CLI::App& command, Request& request, bool stored) {
+  std::vector<std::pair<std::string, Storage>> methods = {{"pairs", Storage::tiles}, {"rays", Storage::rays}};
+  if (!stored) {
+    methods.insert(methods.begin(), {"auto", Storage::automatic});
+    methods.emplace_back("on-demand", Storage::on_demand);
+  }
+  add_choice<Storage>(command, "--method", request.assembly.storage, methods);
+  add(command, "--rays", [&request](const std::string& text) {
+    request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
+    if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
   });
-  add_rays_option(command, request);
-}
-
-void add_stored_method_options(CLI::App& command, Request& request) {
-  add(command, "--method", [&request](const std::string& text) {
-    request.assembly.storage = choice<Storage>("--method", text, {{"pairs", Storage::tiles}, {"rays", Storage::rays}});
-  });
-  add_rays_option(command, request);
 }
 
 Request with_fitting_solver(Request request, bool solver_given) {
@@ -327,39 +272,24 @@ Request with_fitting_solver(Request request, bool solver_given) {
 }
 
 void add_closure_option(CLI::App& command, Request& request) {
-  add_flag(command, "--no-closure", [&request] { request.assembly.close = false; });
+  add_flag(command, "--no-closure", request.assembly.close, false);
 }
 
 void add_relaxation_option(CLI::App& command, std::optional<double>& relaxation) {
-  add(command, "--relaxation", [&relaxation](const std::string& text) {
-    const auto inside = [](double x) { return x > 0 && x < 2; };
-    relaxation = number("--relaxation", text, "a number above 0 and below 2", inside);
-  });
-}
-
-void add_tolerance_option(CLI::App& command, double least, const std::function<void(double)>& take) {
-  add(command, "--tolerance", [take, least](const std::string& text) {
-    const auto inside = [least](double x) { return x > 0 && x >= least && x < 1; };
-    const std::string lower = least > 0 ? "from " + rounded(least) + " to" : "above 0 and";
-    take(number("--tolerance", text, "a number " + lower + " below 1", inside));
+  add(command, "--relaxation", relaxation, [](const std::string& option, const std::string& text) {
+    return number(option, text, "a number above 0 and below 2", [](double x) { return x > 0 && x < 2; });
   });
 }
 
 void add_sampling_options(CLI::App& command, Request& request) {
-  add(command, "--samples", [&request](const std::string& text) {
-    request.assembly.samples = static_cast<int>(whole_number("--samples", text, 4, 16384));
-  });
-  add(command, "--estimator", [&request](const std::string& text) {
-    request.assembly.estimator = choice<Estimator>("--estimator", text,
-                                                   {{"auto", Estimator::automatic},
-                                                    {"area", Estimator::area},
-                                                    {"point-polygon", Estimator::point_polygon},
-                                                    {"hemisphere", Estimator::hemisphere},
-                                                    {"contour", Estimator::contour}});
-  });
-  add(command, "--seed", [&request](const std::string& text) {
-    request.assembly.seed = whole_number("--seed", text, 0, ~std::uint64_t{0});
-  });
+  add_whole(command, "--samples", request.assembly.samples, 4, 16384);
+  add_choice<Estimator>(command, "--estimator", request.assembly.estimator,
+                        {{"auto", Estimator::automatic},
+                         {"area", Estimator::area},
+                         {"point-polygon", Estimator::point_polygon},
+                         {"hemisphere", Estimator::hemisphere},
+                         {"contour", Estimator::contour}});
+  add_whole(command, "--seed", request.assembly.seed, 0, ~std::uint64_t{0});
 }
 
 std::vector<Effect> effects_but(const std::vector<Effect>& without) {
@@ -373,18 +303,13 @@ void add_effect_options(CLI::App& command, Request& request, const std::vector<E
   add_effects(command, "--disable", effects, request.effects.skip);
 }
 
-void add_threads_option(CLI::App& command, int& threads) {
-  add(command, "--threads",
-      [&threads](const std::string& text) { threads = static_cast<int>(whole_number("--threads", text, 0, 1024)); });
-}
+void add_threads_option(CLI::App& command, int& threads) { add_whole(command, "--threads", threads, 0, 1024); }
 
 void add_machine_options(CLI::App& command, Request& request) {
   add_threads_option(command, request.resources.threads);
-  add(command, "--memory", [&request](const std::string& text) { request.resources.memory = bytes("--memory", text); });
+  add(command, "--memory", request.resources.memory, bytes);
 }
 
-void add_quiet_option(CLI::App& command, bool& quiet) {
-  add_flag(command, "-q,--quiet", [&quiet] { quiet = true; });
-}
+void add_quiet_option(CLI::App& command, bool& quiet) { add_flag(command, "-q,--quiet", quiet); }
 
 }  // namespace patchlight::cli

@@ -14,7 +14,7 @@
 
 namespace patchlight::cli {
 
-/// How progress is told: not at all, in one line that is rewritten, or, where that cannot be, in a line every ten
+/// How progress is shown: not at all, in one line that is rewritten, or, where that cannot be, in a line every ten
 /// seconds.
 enum class ProgressShown { nothing, line, log };
 
@@ -29,7 +29,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// What is at work, before stage, percent and time left; nothing at first.
+  /// The name of the work, before stage, percent and time left; empty at first.
   void name(std::string work);
   void show(const Progress& progress) { show(progress, wall_seconds()); }
   /// At this time, in wall seconds.
@@ -51,7 +51,7 @@ class ProgressLine {
 /// Shows progress on the line, which must outlive it, and lets the work go on until the run is interrupted.
 Observer observer_on(ProgressLine& line);
 
-/// Reads what a sub-command is given. \throws Cancelled when the run was interrupted before; else as read_scene().
+/// Reads the models of a command. \throws Cancelled when the run was interrupted before; else as read_scene().
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer);
 
 /// From now on SIGINT, SIGTERM and SIGHUP, unless the caller ignores them, ask the run to stop: interrupted() becomes

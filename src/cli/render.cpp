@@ -37,23 +37,6 @@
 namespace patchlight::cli {
 namespace {
 
-Camera in_metres(Camera camera, double metres_per_unit) {
-  camera.eye *= metres_per_unit;
-  camera.target *= metres_per_unit;
-  camera.height *= metres_per_unit;
-  return camera;
-}
-
-void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& scene) {
-  const Reach reach = reach_of(scene);
-  for (const PictureSettings& picture : pictures) {
-    const std::optional<Camera> camera = camera_for(picture, scene);
-    if (!camera) continue;
-    require_in_reach(reach, camera->eye, "--camera", "the eye");
-    require_in_reach(reach, camera->target, "--camera", "the target");
-  }
-}
-
 // The cameras that are asked for, else all of the scene.
 std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, const Scene& scene) {
   if (wanted.front().views.empty() && !wanted.front().camera && !scene.cameras.empty()) return scene.cameras;
@@ -66,7 +49,7 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
-// With what is enclosed by day, which the file does not tell.
+// With the patches that are enclosed by day, which the file does not list.
 Simulation stored_solution(const std::filesystem::path& file, const std::shared_ptr<const Scene>& scene) {
   Simulation simulation = read_solution(file, scene);
   if (scene->sky || scene->sun)
@@ -86,7 +69,7 @@ void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene
   write_page(arguments.page, page);
 }
 
-// Returns what is said of it.
+// Returns the line about it.
 std::string write_lightmap_of(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                               const Observer& observer) {
   const Lightmap map = bake_lightmap(simulation, arguments.lightmap.options, observer);
@@ -99,7 +82,13 @@ std::string write_lightmap_of(const RenderArguments& arguments, const Scene& sce
 }  // namespace
 
 std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene) {
-  if (settings.camera) return in_metres(*settings.camera, scene.metres_per_unit);
+  if (settings.camera) {
+    Camera camera = *settings.camera;
+    camera.eye *= scene.metres_per_unit;
+    camera.target *= scene.metres_per_unit;
+    camera.height *= scene.metres_per_unit;
+    return camera;
+  }
   std::string names;
   for (const Camera& camera : scene.cameras) {
     if (settings.views.empty() || camera.name == settings.views.front()) return camera;
@@ -108,6 +97,14 @@ std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& s
   if (settings.views.empty()) return std::nullopt;
   throw InputError("--view", "found '" + settings.views.front() + "'; expected a camera of the scene file: " +
                                  (names.empty() ? "it has none" : "one of " + names));
+}
+
+void require_camera_in_reach(const PictureSettings& settings, const Scene& scene) {
+  const std::optional<Camera> camera = camera_for(settings, scene);
+  if (!camera) return;
+  const Reach reach = reach_of(scene);
+  require_in_reach(reach, camera->eye, "--camera", "the eye");
+  require_in_reach(reach, camera->target, "--camera", "the target");
 }
 
 Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
@@ -124,8 +121,7 @@ Picture make_picture(const PictureSettings& settings, const Scene& scene, const 
 }
 
 std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture) {
-  constexpr double tolerance = 1.1;
-  if (picture.unfinished || !picture.reached_error || *picture.reached_error <= tolerance * settings.error)
+  if (picture.unfinished || !picture.reached_error || *picture.reached_error <= 1.1 * settings.error)
     return std::nullopt;
   const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
   std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
@@ -145,8 +141,6 @@ void write_picture_file(const std::filesystem::path& file, const Picture& pictur
   write_picture(file, picture, picture_up(picture.camera, scene.up, scene.north), bands_of(scene));
 }
 
-void write_error_map(const std::filesystem::path& file, const Picture& picture) { write_picture_errors(file, picture); }
-
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse what cannot be written, or would be lost
   const std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
@@ -165,7 +159,7 @@ ExitCode render(const RenderArguments& arguments) {
   const auto read = std::make_shared<const Scene>(read_models(arguments.models, arguments.read, observer));
   const Scene& scene = *read;
   check_limits(scene);
-  require_cameras(wanted, scene);
+  for (const PictureSettings& one : wanted) require_camera_in_reach(one, scene);
   const Simulation simulation = stored_solution(arguments.solution, read);
   std::optional<Simulation> other;
   if (!arguments.difference.empty()) other = stored_solution(arguments.difference, read);
@@ -197,7 +191,7 @@ ExitCode render(const RenderArguments& arguments) {
       write_picture_file(one.file, picture, scene);
     written.push_back(one.file);
     if (!one.error_map.empty()) {
-      write_error_map(one.error_map, picture);
+      write_picture_errors(one.error_map, picture);
       written.push_back(one.error_map);
     }
     if (const auto missed = missed_error(one, picture); missed && !arguments.quiet) missed_errors.push_back(*missed);

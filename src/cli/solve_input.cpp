@@ -53,14 +53,13 @@ HeldShares held_shares(const Scene& scene, Reflections reflections) {
   return held;
 }
 
-// What clear faces and mirrors let go on is in the form factors, and in the area of their patches.
+// The light that clear faces and mirrors pass on is in the form factors, and in the area of their patches.
 void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
                         const HeldShares& held) {
-  constexpr double rounding = 1e-5;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const double then = stored.area[i] / mesh.area[i];
     const double now = held[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
-    if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
+    if (stored.lost.covered[i] > 0 || std::abs(then - now) <= 1e-5 * now /* single precision */) continue;
     std::ostringstream text;
     text << "these form factors have a face that passes the fraction " << 1 - then
          << " of diffuse light as glazing or mirror; now it passes " << 1 - now

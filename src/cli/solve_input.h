@@ -12,7 +12,7 @@
 
 namespace patchlight::cli {
 
-/// What is solved.
+/// The scene to solve, with its request.
 struct SolveInput {
   Scene scene;
   Request request;
@@ -31,7 +31,7 @@ Scene with_points(Scene scene, const SolveArguments& arguments);
 /// InputError when an output is named but nothing is to be read.
 std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene);
 
-/// The folder of --checkpoint, and what became of its blocks of rows in this run.
+/// The folder of --checkpoint, and the fate of its blocks of rows in this run.
 class Checkpoint {
  public:
   Checkpoint() = default;
