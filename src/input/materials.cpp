@@ -1,6 +1,7 @@
 #include "input/materials.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -11,15 +12,11 @@ namespace {
 
 bool lets_all_through(const Material& material) { return material.stated_pane && (material.transmittance >= 1).all(); }
 
-std::string note_on_panes(const std::vector<std::string>& panes, const std::string& first) {
-  return "materials read as panes, which let light through: " + listed(panes) + "; read.settings " + first +
-         ".transmittance=0 makes " + (panes.size() == 1 ? "it" : "the first one") + " opaque";
-}
-
-std::string note_on_mirrors(const std::vector<std::string>& mirrors, const std::string& first) {
-  return "materials read as mirrors, which reflect light without scattering it: " + listed(mirrors) +
-         "; read.settings " + first + ".specular_reflectance=0 makes " +
-         (mirrors.size() == 1 ? "it" : "the first one") + " matt";
+// "materials read as panes, which ...: a, b; read.settings a.transmittance=0 makes the first one opaque"
+std::string note_on_stated(const std::string& kind, const std::vector<std::string>& names, const std::string& setting,
+                           const std::string& result) {
+  return "materials read as " + kind + ": " + listed(names) + "; read.settings " + setting + "=0 makes " +
+         (names.size() == 1 ? "it" : "the first one") + ' ' + result;
 }
 
 }  // namespace
@@ -69,10 +66,9 @@ std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass
 }
 
 std::string listed_shares(const Spectrum& shares) {
-  constexpr int digits = 4;
-  std::string text = rounded(shares[0], digits);
-  if ((shares == shares[0]).all()) return text;
-  for (Eigen::Index band = 1; band < shares.size(); ++band) text += ", " + rounded(shares[band], digits);
+  if ((shares == shares[0]).all()) return rounded(shares[0], 4);
+  std::string text;
+  for (const double share : shares) text += (text.empty() ? "" : ", ") + rounded(share, 4);
   return text;
 }
 
@@ -81,11 +77,7 @@ Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std:
   return {{code, sentence + ": " + listed(names)}};
 }
 
-double plausible_index(double stated, double otherwise) {
-  constexpr double of_ice = 1.3;
-  constexpr double of_diamond = 2.5;
-  return stated >= of_ice && stated <= of_diamond ? stated : otherwise;
-}
+double plausible_index(double stated, double otherwise) { return stated >= 1.3 && stated <= 2.5 ? stated : otherwise; }
 
 // (1 - r) / (1 + r) with r = ((n - 1) / (n + 1))^2
 double highest_transmittance(double index) { return 2 * index / (index * index + 1); }
@@ -134,11 +126,12 @@ Scene with_stated_panes(Scene scene) {
     panes.push_back(material.name + " (" + material.stated_pane->by + ": transmittance " +
                     listed_shares(material.transmittance) + ")");
     const Spectrum most = 1 - material.transmittance;
-    constexpr double rounding = 1e-12;
-    if ((material.reflectance > most + rounding).any()) darker.push_back(material.name);
+    if ((material.reflectance > most + tolerance_of_arithmetic).any()) darker.push_back(material.name);
     material.reflectance = material.reflectance.min(most);
   }
-  if (!panes.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_pane, note_on_panes(panes, first)});
+  if (!panes.empty())
+    scene.diagnostics.push_back({DiagnosticCode::read_as_pane, note_on_stated("panes, which let light through", panes,
+                                                                              first + ".transmittance", "opaque")});
   scene.diagnostics = merged({std::move(scene.diagnostics),
                               note_on(DiagnosticCode::lowered_reflectance,
                                       "the reflectance of panes is lowered to what they do not let through", darker)});
@@ -177,7 +170,10 @@ Scene with_stated_mirrors(Scene scene) {
     mirrors.push_back(material.name + " (" + material.stated_mirror->by + ": specular reflectance " +
                       listed_shares(material.specular_reflectance) + ")");
   }
-  if (!mirrors.empty()) scene.diagnostics.push_back({DiagnosticCode::read_as_mirror, note_on_mirrors(mirrors, first)});
+  if (!mirrors.empty())
+    scene.diagnostics.push_back(
+        {DiagnosticCode::read_as_mirror, note_on_stated("mirrors, which reflect light without scattering it", mirrors,
+                                                        first + ".specular_reflectance", "matt")});
   scene.diagnostics =
       merged({std::move(scene.diagnostics),
               note_on(DiagnosticCode::lowered_reflectance,

@@ -28,7 +28,21 @@ std::string listed_shares(const Spectrum& shares);
 /// "sentence: a, b", or nothing when there are no names.
 Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names);
 
-/// Tells objects of the same name apart: "wall", "wall (2)", "wall (3)".
+/// Groups of a scene by their names.
+class GroupIndex {
+ public:
+  /// The index of the group of that name, which is added to `groups` where it is new.
+  std::uint32_t index_of(const std::string& name, std::vector<std::string>& groups) {
+    const auto [found, is_new] = index_.emplace(name, static_cast<std::uint32_t>(groups.size()));
+    if (is_new) groups.push_back(name);
+    return found->second;
+  }
+
+ private:
+  std::map<std::string, std::uint32_t> index_;
+};
+
+/// Makes the names of objects unique: "wall", "wall (2)", "wall (3)".
 class UniqueNames {
  public:
   /// The name, with a number if it was returned before. O(log n), expected.

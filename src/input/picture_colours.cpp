@@ -23,15 +23,14 @@ namespace {
 
 enum class PictureFormat { png, jpeg, bmp, hdr, tga, unknown };
 
-// A TGA has no signature: its second byte tells whether it has a palette. JPEG 2000, AVIF and ICO have a 0 there as
+// A TGA has no signature: its second byte states whether it has a palette. JPEG 2000, AVIF and ICO have a 0 there as
 // well, but no image type of a TGA in the third byte, by which stb_image refuses them.
 PictureFormat format_of_picture(std::string_view bytes) {
-  constexpr std::size_t tga_header = 18;
   if (bytes.starts_with("\x89PNG")) return PictureFormat::png;
   if (bytes.starts_with("\xFF\xD8\xFF")) return PictureFormat::jpeg;
   if (bytes.starts_with("BM")) return PictureFormat::bmp;
   if (bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n")) return PictureFormat::hdr;
-  const bool may_be_tga = bytes.size() >= tga_header && static_cast<unsigned char>(bytes[1]) <= 1;
+  const bool may_be_tga = bytes.size() >= 18 && static_cast<unsigned char>(bytes[1]) <= 1;
   return may_be_tga ? PictureFormat::tga : PictureFormat::unknown;
 }
 
@@ -90,13 +89,12 @@ std::string fault_of(PictureFormat format, const PictureBytes& bytes) {
 
 constexpr const char* too_large = "has more than 8192 x 8192 pixels";
 
-// stb_image refuses sizes beyond its own limits as if it did not know the format; its readers tell, at the header.
+// stb_image refuses sizes beyond its own limits as if it did not know the format; its readers name the cause at the
+// header.
 bool is_beyond_limits(std::string_view picture) {
   const stbi_io_callbacks callbacks = PictureBytes::callbacks();
   PictureBytes bytes(picture, false);
-  int width = 0;
-  int height = 0;
-  int channels = 0;
+  int width = 0, height = 0, channels = 0;
   const std::unique_ptr<unsigned char[], FreeMemory> codes(
       stbi_load_from_callbacks(&callbacks, &bytes, &width, &height, &channels, 0));
   return !codes && std::strcmp(stbi_failure_reason(), "too large") == 0;
@@ -107,9 +105,7 @@ bool is_beyond_limits(std::string_view picture) {
 PicturePixels stated_size(PictureFormat format, std::string_view picture) {
   const stbi_io_callbacks callbacks = PictureBytes::callbacks();
   PictureBytes bytes(picture, false);
-  int width = 0;
-  int height = 0;
-  int channels = 0;
+  int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_callbacks(&callbacks, &bytes, &width, &height, &channels)) {
     if (format == PictureFormat::tga) return with_fault(unknown_format);
     const bool may_be_large = format == PictureFormat::png || format == PictureFormat::jpeg;
@@ -136,13 +132,10 @@ bool alpha_means_something(PictureFormat format, std::string_view picture) {
   return format != PictureFormat::bmp || picture.substr(30, 4) != std::string_view("\0\0\0\0", 4);
 }
 
-// The 256 values of sRGB to linear, IEC 61966-2-1.
+// The 256 values of sRGB to linear.
 std::array<double, 256> linear_values() {
   std::array<double, 256> values{};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double srgb = static_cast<double>(k) / 255.0;
-    values[k] = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = linear_of_srgb(static_cast<double>(k) / 255.0);
   return values;
 }
 
@@ -151,7 +144,7 @@ class Pixels {
  public:
   explicit Pixels(const PicturePixels& picture) : picture_(picture), linear_(linear_values()) {}
 
-  // Grey alone, or grey and alpha, stands for all three.
+  // Grey alone, or gray and alpha, stands for all three.
   Rgb operator()(std::size_t pixel) const {
     const std::size_t first = pixel * picture_.channels;
     const std::size_t step = picture_.channels < 3 ? 0 : 1;
@@ -174,8 +167,7 @@ class Pixels {
     return (codes[0] + codes[step] + codes[2 * step]) / (3 * 255.0);
   }
   std::size_t alpha(std::size_t pixel) const {
-    constexpr std::size_t opaque = 255;
-    return picture_.has_alpha ? picture_.codes[(pixel + 1) * picture_.channels - 1] : opaque;
+    return picture_.has_alpha ? picture_.codes[(pixel + 1) * picture_.channels - 1] : std::size_t{255};
   }
 
  private:
@@ -289,7 +281,7 @@ std::size_t texels_of_one_of(std::size_t pictures) {
   return std::max(std::min(most_texels_of_picture, most_texels_of_model / pictures), std::size_t{1});
 }
 
-// What a mask says, as numbers in a row, and back.
+// A mask as numbers in a row, and back.
 Spectrum numbers_of_mask(const DecodedPicture& picture) {
   if (!picture.alpha) return Spectrum::Constant(1, picture.number);
   const Coverage coverage = coverage_by(*picture.alpha, [](double alpha) { return alpha; });
@@ -302,12 +294,6 @@ PictureMask mask_from(const Spectrum& numbers) {
   if (numbers.size() == 1) return {numbers[0], std::nullopt};
   return {numbers[0], Spectrum(numbers.tail(3))};
 }
-
-// A place may be so far from that of the affine map: more than numbers of six digits leave open.
-constexpr double same_place_when_bent = 1e-3;
-
-// What is farther away cannot be told apart within a texel.
-constexpr double farthest_place = 1e9;
 
 // Least squares in the plane of the face: (u, v) = G q + c with q along two axes of the plane. Exact for triangles.
 std::optional<TextureMap> map_of(std::span<const Point> corners, std::span<const Eigen::Vector2d> places) {
@@ -349,9 +335,7 @@ PicturePixels decoded_pixels(std::string_view picture) {
   const stbi_io_callbacks callbacks = PictureBytes::callbacks();
   const bool is_linear = format == PictureFormat::hdr;
   PictureBytes bytes(picture, is_linear);
-  int width = 0;
-  int height = 0;
-  int channels = 0;
+  int width = 0, height = 0, channels = 0;
   if (is_linear) {
     pixels.linear.reset(stbi_loadf_from_callbacks(&callbacks, &bytes, &width, &height, &channels, 0));
   } else {
@@ -364,6 +348,11 @@ PicturePixels decoded_pixels(std::string_view picture) {
   pixels.channels = static_cast<std::size_t>(channels);
   pixels.has_alpha = channels % 2 == 0 && alpha_means_something(format, picture);
   return pixels;
+}
+
+// IEC 61966-2-1.
+double linear_of_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 Coverage coverage_by(const AlphaColours& picture, const std::function<double(double)>& covered) {
@@ -402,7 +391,7 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
   colours.faults = std::move(read.faults);
   const auto& pictures = read.bytes;
   if (pictures.empty()) return colours;
-  // What a child process finds comes back as a scene: a material for each picture, and a group for each fault.
+  // The result of the child process comes back as a scene: a material for each picture, and a group for each fault.
   const std::size_t most = texels_of_one_of(pictures.size());
   const auto decode = [&] {
     Scene scene;
@@ -444,7 +433,7 @@ std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const E
                                std::uint32_t line) {
   if (!(area_vector(corners).norm() > 0)) return no_texture_map;
   const bool known = places.size() == corners.size() && std::all_of(places.begin(), places.end(), [](const auto& at) {
-                       return at.allFinite() && at.cwiseAbs().maxCoeff() <= farthest_place;
+                       return at.allFinite() && at.cwiseAbs().maxCoeff() <= 1e9;  // farther away a texel is too small
                      });
   const std::optional<TextureMap> map = known ? map_of(corners, places) : std::nullopt;
   if (!map) {
@@ -452,12 +441,23 @@ std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const E
     return no_texture_map;
   }
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    if ((map->linear * corners[k] + map->offset - places[k]).norm() <= same_place_when_bent) continue;
+    if ((map->linear * corners[k] + map->offset - places[k]).norm() <= 1e-3) continue;  // six digits leave less open
     count(bent_, line);
     break;
   }
   maps_.push_back(*map);
   return static_cast<std::uint32_t>(maps_.size() - 1);
+}
+
+std::uint32_t MappedFaces::add(std::span<const Point> vertices, std::span<const std::uint32_t> corners,
+                               std::uint32_t first, std::span<const Eigen::Vector2d> places) {
+  std::vector<Point> points;
+  std::vector<Eigen::Vector2d> in_picture;
+  for (const std::uint32_t corner : corners) {
+    points.push_back(vertices[corner]);
+    if (corner - first < places.size()) in_picture.push_back(places[corner - first]);
+  }
+  return add(points, in_picture, 0);
 }
 
 void MappedFaces::count(Faces& faces, std::uint32_t line) {

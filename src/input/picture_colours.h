@@ -20,13 +20,16 @@
 
 namespace patchlight {
 
+/// A value of sRGB, 0 to 1, as a linear one.
+double linear_of_srgb(double value);
+
 /// The pixels of a picture by their alpha, of 0 to 255.
 struct AlphaColours {
   std::array<std::size_t, 256> count{};          ///< those with this alpha
   std::array<std::array<double, 3>, 256> sum{};  ///< the sum of their linear RGB
 };
 
-/// What covers a surface that a picture leaves free in places.
+/// The cover of a surface that a picture leaves free in places.
 struct Coverage {
   double share = 1;  ///< of the surface
   Spectrum colour;   ///< the mean of what covers it, linear RGB; black where nothing does
@@ -38,7 +41,7 @@ Coverage coverage_by(const AlphaColours& picture, const std::function<double(dou
 /// A picture as it was decoded.
 struct DecodedPicture {
   std::optional<Spectrum> mean;                 ///< linear RGB; nothing where it could not be decoded
-  std::shared_ptr<const Texture> texture;       ///< null where all of it has one colour
+  std::shared_ptr<const Texture> texture;       ///< null where all of it has one color
   std::shared_ptr<const AlphaColours> alpha{};  ///< null where all of it is opaque
   double number = 0;    ///< the mean of red, green and blue as a picture of numbers has them, 0 to 1, not gamma encoded
   std::string fault{};  ///< why it could not be decoded: "is cut off"
@@ -60,16 +63,16 @@ inline constexpr const char* covered_note =
     "surfaces cut out by pictures are there in part, every face by the share that its whole picture covers; no "
     "error bar holds where its holes are";
 
-/// What a picture says that tells where a surface is.
+/// A picture as the mask of a surface.
 struct PictureMask {
   double covered = 1;              ///< the mean of its alpha, or of its numbers where all of it is opaque
   std::optional<Spectrum> colour;  ///< where it has alpha: the mean linear RGB of what it covers
 };
 
-/// The mean colours of picture files.
+/// The mean colors of picture files.
 struct PictureColours {
   std::map<std::string, Spectrum> by_file;                         ///< of those that could be read
-  std::map<std::string, std::shared_ptr<const Texture>> textures;  ///< of those with more than one colour
+  std::map<std::string, std::shared_ptr<const Texture>> textures;  ///< of those with more than one color
   std::map<std::string, PictureMask> masks;                        ///< of those that could be read
   std::map<std::string, std::string> faults;                       ///< of the others: "is not there"
   std::vector<std::string> digests;                                ///< for the checksum of what they belong to
@@ -89,7 +92,7 @@ struct FreeMemory {
 struct PicturePixels {
   std::size_t width = 0;
   std::size_t height = 0;
-  std::size_t channels = 0;                            ///< grey, grey and alpha, RGB, or RGB and alpha
+  std::size_t channels = 0;                            ///< gray, gray and alpha, RGB, or RGB and alpha
   std::unique_ptr<unsigned char[], FreeMemory> codes;  ///< of sRGB; alpha is linear
   std::unique_ptr<float[], FreeMemory> linear;         ///< of Radiance's pictures, with Rec. 709 primaries
   bool has_alpha = false;                              ///< the last channel is one, and it means something
@@ -100,10 +103,10 @@ struct PicturePixels {
 /// upper eight are taken. Takes three to four bytes a pixel twice, of 16 bits and of HDR three times as much.
 PicturePixels decoded_pixels(std::string_view picture);
 
-/// What a picture of 1 in red, in green and in blue alone reflects when it is multiplied with a colour of three bands.
+/// The reflectances of a picture of 1 in red, in green and in blue alone, times a color of three bands.
 std::array<Spectrum, 3> primaries_times(const Spectrum& factor);
 
-/// The maps of faces into pictures, one after the other, and what is wrong with them.
+/// The maps of faces into pictures, one after the other, and their faults.
 class MappedFaces {
  public:
   explicit MappedFaces(std::string file) : file_(std::move(file)) {}
@@ -112,6 +115,10 @@ class MappedFaces {
   /// that comes nearest, where it has more than three corners. no_texture_map for a face without area, and for one
   /// whose places are not known: there are none, or they are not finite. `line` 0: not known.
   std::uint32_t add(std::span<const Point> corners, std::span<const Eigen::Vector2d> places, std::uint32_t line);
+
+  /// The same for corners among the vertices of a scene, those from `first` on having these places. Line 0.
+  std::uint32_t add(std::span<const Point> vertices, std::span<const std::uint32_t> corners, std::uint32_t first,
+                    std::span<const Eigen::Vector2d> places);
 
   const std::vector<TextureMap>& maps() const { return maps_; }
 

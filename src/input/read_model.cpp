@@ -74,11 +74,10 @@ Scene read_in_unit(const std::filesystem::path& file, const std::string& format,
 
 // "; did you mean 'room.obj'?" when its folder has a file of such a name; nothing where it cannot be read.
 std::string near_file(const std::filesystem::path& file) {
-  constexpr std::size_t most = 10'000;
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::vector<std::string> names;
   std::error_code error;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < most;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end && names.size() < 10'000;
        entry.increment(error)) {
     std::error_code unknown;
     if (!entry->is_directory(unknown)) names.push_back(entry->path().filename().string());
@@ -104,7 +103,7 @@ bool same_values(const Material& a, const Material& b) {
          same_values(a.diffuse_transmittance, b.diffuse_transmittance);
 }
 
-// The scene with another one's materials added; what becomes of those is their index in the scene.
+// The scene with another one's materials added; `index` has their places in the scene.
 struct MergedPalette {
   std::vector<Material> materials;
   Diagnostics notes;

@@ -28,7 +28,7 @@ std::string format_of(const std::filesystem::path& file);
 /// name a file of that folder which may be meant.
 void require_file(const std::filesystem::path& file, const std::string& where, bool near_names = false);
 
-/// One model file as it stands, in metres, before any setting or check. `format` is one of readable_formats() without
+/// One model file as it stands, in meters, before any setting or check. `format` is one of readable_formats() without
 /// toml. `metres_per_unit` is used instead of the unit that the file states, if it is given. The file, and those that
 /// it names, must lie in the folder `confine`, if there is one. `known` has the modifiers of files before it. \throws
 /// InputError.

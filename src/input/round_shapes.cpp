@@ -64,9 +64,9 @@ FacetedShape unit_sphere() {
   return shape;
 }
 
-// By what the radii of a truncated cone of n sides have to be larger for its area: with the slant height of a side,
-// sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that, which is
-// to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
+// The factor by which the radii of a truncated cone of n sides have to be larger for its area: with the slant height of
+// a side, sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that,
+// which is to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
 double cone_factor(double height, double difference) {
   const double sides = round_sides * std::sin(step / 2) / std::numbers::pi;
   const double inclined = std::pow(difference * std::cos(step / 2), 2);
@@ -76,7 +76,8 @@ double cone_factor(double height, double difference) {
   return std::sqrt(2 * target / (h2 + std::sqrt(h2 * h2 + 4 * inclined * target)));
 }
 
-// By what the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2 = pi.
+// The factor by which the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2
+// = pi.
 double disk_factor() { return std::sqrt(2 * std::numbers::pi / (round_sides * std::sin(step))); }
 
 // Adds a circle of corners, or one point for a radius of 0, and returns the place of its first.

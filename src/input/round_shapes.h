@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,20 @@ struct FacetedShape {
   std::vector<Point> points;
   std::vector<std::vector<std::uint32_t>> faces;  ///< places of their corners in `points`
 };
+
+/// The scene with the faces of a shape, placed by `placed`, as polygons like this one; turned over if `is_turned`.
+template <class Placed>
+Scene with_shape(Scene scene, const FacetedShape& shape, const Placed& placed, bool is_turned, Polygon polygon) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  for (const Point& point : shape.points) scene.vertices.push_back(placed(point));
+  for (const std::vector<std::uint32_t>& face : shape.faces) {
+    polygon.corners = face;
+    for (std::uint32_t& corner : polygon.corners) corner += first;
+    if (is_turned) std::reverse(polygon.corners.begin(), polygon.corners.end());
+    scene.polygons.push_back(polygon);
+  }
+  return scene;
+}
 
 /// How many sides a round surface has around its axis.
 inline constexpr std::uint32_t round_sides = 24;

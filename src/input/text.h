@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace patchlight {
@@ -38,7 +40,7 @@ std::vector<std::string_view> words(std::string_view line);
 /// The words before the first one that begins with #.
 std::vector<std::string_view> words_before_comment(std::string_view line);
 
-/// What follows the first word, without spaces and tabs around it.
+/// The line behind its first word, without spaces and tabs around it.
 std::string_view after_first_word(std::string_view line);
 
 /// The line without spaces and tabs around it.
@@ -46,6 +48,18 @@ std::string_view trimmed(std::string_view line);
 
 /// The number that the whole word spells; nothing when it is not a finite decimal number.
 std::optional<double> finite_number(std::string_view word);
+
+/// The whole number that the whole word spells; nothing when it is none.
+template <class Number>
+std::optional<Number> whole_number_in(std::string_view word) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+/// The parts of a text between commas, at least one.
+std::vector<std::string_view> between_commas(std::string_view text);
 
 /// "a, b, c".
 std::string listed(std::span<const std::string> names);
@@ -55,8 +69,8 @@ inline std::string at_line(const std::filesystem::path& file, std::uint32_t line
   return file.string() + ":" + std::to_string(line);
 }
 
-/// Limits of one model and all files that it names. A small file can ask for a great deal of work: copies of copies,
-/// texts that hold texts. Readers of such formats refuse a file that exceeds one of these with an InputError.
+/// Limits of one model and all files that it names: a small file can ask for a great deal of work. Readers refuse a
+/// file that exceeds one of these with an InputError.
 namespace reading_limits {
 
 inline constexpr std::size_t polygons = 10'000'000;    ///< copies included; a million take about a gigabyte to solve

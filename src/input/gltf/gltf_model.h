@@ -26,7 +26,7 @@ struct GltfFiles {
 struct GltfModel {
   tinygltf::Model model;
   std::map<int, Spectrum> mean_color;  ///< linear RGB of those images that could be decoded, by index
-  std::map<int, std::shared_ptr<const Texture>> textures;    ///< those of them with more than one colour
+  std::map<int, std::shared_ptr<const Texture>> textures;    ///< those of them with more than one color
   std::map<int, std::shared_ptr<const AlphaColours>> alpha;  ///< those of them that are not opaque all over
   std::map<int, std::string> picture_faults;                 ///< why the others could not
   GltfFiles files;
@@ -37,7 +37,7 @@ struct GltfModel {
 /// the folder `confine`, if there is one.
 GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesystem::path& confine);
 
-/// The values of an accessor, `components` per element, normalised integers converted as glTF 2.0 section 3.11 says.
+/// The values of an accessor, `components` per element, normalized integers converted as glTF 2.0 section 3.11 says.
 /// \throws InputError naming `file` when there is no such accessor, it has another type or leaves its buffer.
 std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, int components,
                                     const std::string& file);

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -38,21 +37,22 @@ std::vector<Statement> statements_of(const std::vector<TextLine>& lines) {
 // The k-th word as a whole number below `limit`.
 std::uint32_t whole_number(const Statement& statement, std::size_t k, std::uint32_t limit, const std::string& file) {
   const std::string_view word = k < statement.words.size() ? statement.words[k] : std::string_view();
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || error != std::errc() || end != word.data() + word.size() || value >= limit) {
+  const auto value = whole_number_in<std::uint32_t>(word);
+  if (!value || *value >= limit) {
     throw InputError(at_line(file, statement.line), "found '" + std::string(word) + "' as number " +
                                                         std::to_string(k + 1) + "; expected a whole number from 0 to " +
                                                         std::to_string(limit - 1));
   }
-  return value;
+  return *value;
 }
 
-Point off_vertex(const Statement& statement, const std::string& file) {
+// Three numbers among the words, the first at `begin`.
+Point vertex_of(const std::vector<std::string_view>& words, std::size_t begin, const std::string& where,
+                const std::string& expected) {
   Point point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto value = axis < statement.words.size() ? finite_number(statement.words[axis]) : std::nullopt;
-    if (!value) throw InputError(at_line(file, statement.line), "expected three finite numbers: a vertex x y z");
+    const auto value = begin + axis < words.size() ? finite_number(words[begin + axis]) : std::nullopt;
+    if (!value) throw InputError(where, "expected three finite numbers" + expected);
     point[static_cast<Eigen::Index>(axis)] = *value;
   }
   return point;
@@ -80,7 +80,6 @@ struct OffHeader {
 };
 
 OffHeader header_of(std::vector<Statement>& statements, const std::string& file) {
-  constexpr std::uint32_t most = ~std::uint32_t{0};
   const std::string_view key = statements.empty() ? std::string_view() : statements[0].words[0];
   const bool is_off = key == "OFF" || key == "COFF" || key == "NOFF" || key == "CNOFF";
   if (!is_off || (statements[0].words.size() > 1 && statements[0].words[1] == "BINARY")) {
@@ -92,8 +91,8 @@ OffHeader header_of(std::vector<Statement>& statements, const std::string& file)
   header.first = statements[0].words.empty() ? 1 : 0;
   if (header.first >= statements.size())
     throw InputError(file, "ends after the word OFF; expected the numbers of vertices and faces");
-  header.vertices = whole_number(statements[header.first], 0, most, file);
-  header.faces = whole_number(statements[header.first], 1, most, file);
+  header.vertices = whole_number(statements[header.first], 0, ~std::uint32_t{0}, file);
+  header.faces = whole_number(statements[header.first], 1, ~std::uint32_t{0}, file);
   ++header.first;
   const std::size_t lines = statements.size() - header.first;
   if (lines < header.vertices || lines - header.vertices < header.faces) {
@@ -121,36 +120,12 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 };
 
-// What a PLY file says about itself.
+// The header of a PLY file.
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
   std::size_t bytes = 0;  // where the values begin
   std::uint32_t lines = 0;
-};
-
-// Hands out the values of a PLY file one after the other.
-class PlyBody {
- public:
-  PlyBody(std::string_view bytes, const PlyHeader& header, std::string file);
-
-  // The next number, of this type. \throws InputError when there is none.
-  double next(PlyType type);
-  // All numbers of the next property: one, or a list. \throws InputError when they are missing.
-  std::vector<double> next(const PlyProperty& property);
-  // "room.ply:12", or "room.ply" where values are binary.
-  std::string place() const;
-  // The line in an ASCII file; 0 otherwise.
-  std::uint32_t line() const { return encoding_ == PlyEncoding::ascii ? line_ : 0; }
-
- private:
-  double next_word();
-  double next_bytes(PlyType type);
-
-  std::string_view rest_;
-  PlyEncoding encoding_;
-  std::uint32_t line_;
-  std::string file_;
 };
 
 PlyType type_named(std::string_view name, const std::string& where) {
@@ -177,14 +152,9 @@ PlyEncoding encoding_named(const std::vector<std::string_view>& statement, const
 }
 
 PlyElement element_of(const std::vector<std::string_view>& statement, const std::string& where) {
-  PlyElement element;
-  const std::string_view count = statement.size() == 3 ? statement[2] : std::string_view();
-  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), element.count);
-  if (count.empty() || error != std::errc() || end != count.data() + count.size()) {
-    throw InputError(where, "expected: element NAME COUNT");
-  }
-  element.name = statement[1];
-  return element;
+  const auto count = statement.size() == 3 ? whole_number_in<std::uint64_t>(statement[2]) : std::nullopt;
+  if (!count) throw InputError(where, "expected: element NAME COUNT");
+  return {std::string(statement[1]), *count, {}};
 }
 
 PlyProperty property_of(const std::vector<std::string_view>& statement, const std::string& where) {
@@ -220,68 +190,7 @@ double value_of(const std::array<char, 8>& bytes) {
   return static_cast<double>(value);
 }
 
-// Throws InputError naming the line.
-PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
-  PlyHeader header;
-  if (trimmed(line_at(bytes, header.bytes)) != "ply") {
-    throw InputError(file, "is not a PLY file: expected the word ply at its beginning");
-  }
-  header.lines = 1;
-  while (header.bytes < bytes.size()) {
-    const std::vector<std::string_view> statement = words(line_at(bytes, header.bytes));
-    const std::string where = file + ":" + std::to_string(++header.lines);
-    if (statement.empty() || statement[0] == "comment" || statement[0] == "obj_info") continue;
-    if (statement[0] == "end_header") return header;
-    if (statement[0] == "format") {
-      header.encoding = encoding_named(statement, where);
-    } else if (statement[0] == "element") {
-      header.elements.push_back(element_of(statement, where));
-    } else if (statement[0] == "property" && !header.elements.empty()) {
-      header.elements.back().properties.push_back(property_of(statement, where));
-    } else {
-      throw InputError(where, "found '" + std::string(statement[0]) + "'; expected element, property or end_header");
-    }
-  }
-  throw InputError(file, "ends within its header; expected end_header");
-}
-
-PlyBody::PlyBody(std::string_view bytes, const PlyHeader& header, std::string file)
-    : rest_(bytes.substr(header.bytes)), encoding_(header.encoding), line_(header.lines + 1), file_(std::move(file)) {}
-
-std::string PlyBody::place() const { return line() > 0 ? file_ + ":" + std::to_string(line()) : file_; }
-
-double PlyBody::next(PlyType type) { return encoding_ == PlyEncoding::ascii ? next_word() : next_bytes(type); }
-
-std::vector<double> PlyBody::next(const PlyProperty& property) {
-  if (!property.is_list) return {next(property.type)};
-  const double count = next(property.count_type);
-  std::vector<double> values;
-  while (static_cast<double>(values.size()) < count) values.push_back(next(property.type));
-  return values;
-}
-
-double PlyBody::next_word() {
-  constexpr std::string_view blanks = " \t\r\n";
-  const std::size_t begin = std::min(rest_.find_first_not_of(blanks), rest_.size());
-  line_ +=
-      static_cast<std::uint32_t>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
-  rest_.remove_prefix(begin);
-  const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
-  rest_.remove_prefix(word.size());
-  if (word.empty()) throw InputError(file_, "ends before all elements that its header promises");
-  const std::optional<double> value = finite_number(word);
-  if (!value) throw InputError(place(), "found '" + std::string(word) + "'; expected a finite number");
-  return *value;
-}
-
-double PlyBody::next_bytes(PlyType type) {
-  const std::size_t size = size_of(type);
-  if (rest_.size() < size) throw InputError(file_, "ends before all elements that its header promises");
-  std::array<char, 8> bytes{};
-  std::copy_n(rest_.begin(), size, bytes.begin());
-  if (encoding_ == PlyEncoding::big_endian)
-    std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-  rest_.remove_prefix(size);
+double number_from(const std::array<char, 8>& bytes, PlyType type) {
   switch (type) {
     case PlyType::int8:
       return value_of<std::int8_t>(bytes);
@@ -302,6 +211,87 @@ double PlyBody::next_bytes(PlyType type) {
   }
   return 0;
 }
+
+// Throws InputError naming the line.
+PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
+  PlyHeader header;
+  if (trimmed(line_at(bytes, header.bytes)) != "ply") {
+    throw InputError(file, "is not a PLY file: expected the word ply at its beginning");
+  }
+  header.lines = 1;
+  while (header.bytes < bytes.size()) {
+    const std::vector<std::string_view> statement = words(line_at(bytes, header.bytes));
+    const std::string where = at_line(file, ++header.lines);
+    if (statement.empty() || statement[0] == "comment" || statement[0] == "obj_info") continue;
+    if (statement[0] == "end_header") return header;
+    if (statement[0] == "format") {
+      header.encoding = encoding_named(statement, where);
+    } else if (statement[0] == "element") {
+      header.elements.push_back(element_of(statement, where));
+    } else if (statement[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(property_of(statement, where));
+    } else {
+      throw InputError(where, "found '" + std::string(statement[0]) + "'; expected element, property or end_header");
+    }
+  }
+  throw InputError(file, "ends within its header; expected end_header");
+}
+
+// Hands out the values of a PLY file one after the other.
+class PlyBody {
+ public:
+  PlyBody(std::string_view bytes, const PlyHeader& header, std::string file)
+      : rest_(bytes.substr(header.bytes)),
+        encoding_(header.encoding),
+        line_(header.lines + 1),
+        file_(std::move(file)) {}
+
+  // The next number, of this type. \throws InputError when there is none.
+  double next(PlyType type) { return encoding_ == PlyEncoding::ascii ? next_word() : next_bytes(type); }
+
+  // All numbers of the next property: one, or a list. \throws InputError when they are missing.
+  std::vector<double> next(const PlyProperty& property) {
+    if (!property.is_list) return {next(property.type)};
+    const double count = next(property.count_type);
+    std::vector<double> values;
+    while (static_cast<double>(values.size()) < count) values.push_back(next(property.type));
+    return values;
+  }
+
+  // The line in an ASCII file; 0 otherwise.
+  std::uint32_t line() const { return encoding_ == PlyEncoding::ascii ? line_ : 0; }
+
+ private:
+  double next_word() {
+    constexpr std::string_view blanks = " \t\r\n";
+    const std::size_t begin = std::min(rest_.find_first_not_of(blanks), rest_.size());
+    line_ +=
+        static_cast<std::uint32_t>(std::count(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
+    rest_.remove_prefix(begin);
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
+    rest_.remove_prefix(word.size());
+    if (word.empty()) throw InputError(file_, "ends before all elements that its header promises");
+    const std::optional<double> value = finite_number(word);
+    if (!value) throw InputError(at_line(file_, line_), "found '" + std::string(word) + "'; expected a finite number");
+    return *value;
+  }
+
+  double next_bytes(PlyType type) {
+    const std::size_t size = size_of(type);
+    if (rest_.size() < size) throw InputError(file_, "ends before all elements that its header promises");
+    std::array<char, 8> bytes{};
+    std::copy_n(rest_.begin(), size, bytes.begin());
+    if (encoding_ == PlyEncoding::big_endian)
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    rest_.remove_prefix(size);
+    return number_from(bytes, type);
+  }
+
+  std::string_view rest_;
+  PlyEncoding encoding_;
+  std::uint32_t line_;
+  std::string file_;
+};
 
 // Where a property stands in its element; nothing when there is none of these names.
 std::optional<std::size_t> find(const PlyElement& element, std::initializer_list<std::string_view> names) {
@@ -332,13 +322,17 @@ Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
   return scene;
 }
 
-Polygon polygon_of(const std::vector<double>& corners, const PlyBody& body) {
+// Of a line, or of the file where its values are binary.
+[[noreturn]] void refuse_corner(const std::string& file, std::uint32_t line) {
+  throw InputError(line > 0 ? at_line(file, line) : file,
+                   "a face has a corner that names no vertex\nhint: export the model again");
+}
+
+Polygon polygon_of(const std::vector<double>& corners, std::uint32_t line, const std::string& file) {
   Polygon polygon;
-  polygon.line = body.line();
+  polygon.line = line;
   for (const double corner : corners) {
-    if (!(corner >= 0 && corner < no_polygon)) {
-      throw InputError(body.place(), "a face has a corner that names no vertex\nhint: export the model again");
-    }
+    if (!(corner >= 0 && corner < no_polygon)) refuse_corner(file, line);
     polygon.corners.push_back(static_cast<std::uint32_t>(corner));
   }
   return polygon;
@@ -355,7 +349,7 @@ Scene with_faces(Scene scene, const PlyElement& element, PlyBody& body) {
       if (values.size() < 3)
         left_out.lose_face(too_few_corners, scene.groups[0], {.line = body.line()});
       else
-        scene.polygons.push_back(polygon_of(values, body));
+        scene.polygons.push_back(polygon_of(values, body.line(), scene.file));
     }
   }
   if (find(element, {"red", "diffuse_red"}))
@@ -383,7 +377,6 @@ Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
 // two bytes more. Numbers are little-endian, as on the machines this runs on.
 constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
-constexpr std::size_t normal_bytes = 12;
 
 std::size_t triangles_promised(std::string_view bytes) {
   std::uint32_t count = 0;
@@ -391,7 +384,7 @@ std::size_t triangles_promised(std::string_view bytes) {
   return count;
 }
 
-// Binary files may begin with "solid" too; their length tells. Some writers use capitals.
+// Binary files may begin with "solid" too; their length decides. Some writers use capitals.
 bool is_binary(std::string_view bytes) {
   if (bytes.size() < header_bytes) return false;
   return bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes) ||
@@ -416,22 +409,12 @@ Scene with_binary(Scene scene, std::string_view bytes) {
   for (std::size_t t = 0; t < count; ++t) {
     scene.polygons.push_back(polygon_of(static_cast<std::uint32_t>(scene.vertices.size()), 3, 0, 0));
     std::array<float, 9> values{};
-    std::memcpy(values.data(), bytes.data() + header_bytes + triangle_bytes * t + normal_bytes, sizeof values);
+    std::memcpy(values.data(), bytes.data() + header_bytes + triangle_bytes * t + 12, sizeof values);
     for (std::size_t k = 0; k < 9; k += 3) {
       scene.vertices.emplace_back(scene.metres_per_unit * Point(values[k], values[k + 1], values[k + 2]));
     }
   }
   return scene;
-}
-
-Point stl_vertex(const std::vector<std::string_view>& statement, const std::string& where) {
-  Point point;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto value = axis + 1 < statement.size() ? finite_number(statement[axis + 1]) : std::nullopt;
-    if (!value) throw InputError(where, "expected three finite numbers after vertex");
-    point[static_cast<Eigen::Index>(axis)] = *value;
-  }
-  return point;
 }
 
 Scene with_ascii(Scene scene, const std::string& text) {
@@ -442,7 +425,7 @@ Scene with_ascii(Scene scene, const std::string& text) {
   for (const TextLine& line : logical_lines(text)) {
     const std::vector<std::string_view> statement = words(line.text);
     if (statement.empty()) continue;
-    const std::string where = scene.file + ":" + std::to_string(line.number);
+    const std::string where = at_line(scene.file, line.number);
     const std::string word = in_lower_case(std::string(statement[0]));
     if (word == "solid") {
       scene.groups.emplace_back(after_first_word(line.text));
@@ -453,7 +436,7 @@ Scene with_ascii(Scene scene, const std::string& text) {
       begin = line.number;
       is_whole = false;
     } else if (word == "vertex") {
-      scene.vertices.emplace_back(scene.metres_per_unit * stl_vertex(statement, where));
+      scene.vertices.emplace_back(scene.metres_per_unit * vertex_of(statement, 1, where, " after vertex"));
     } else if (word == "endloop") {
       const auto corners = static_cast<std::uint32_t>(scene.vertices.size() - first);
       const auto group = static_cast<std::uint32_t>(scene.groups.size() - 1);
@@ -465,7 +448,7 @@ Scene with_ascii(Scene scene, const std::string& text) {
       is_whole = true;
     }
   }
-  if (!is_whole) throw InputError(scene.file + ":" + std::to_string(begin), "the file ends within this facet");
+  if (!is_whole) throw InputError(at_line(scene.file, begin), "the file ends within this facet");
   return left_out.on(std::move(scene));
 }
 
@@ -480,7 +463,9 @@ Scene read_off(const std::filesystem::path& file, double metres_per_unit) {
   Scene scene = scene_without_materials(file.string(), metres_per_unit);
   scene.groups.push_back(file.stem().string());
   for (std::size_t k = 0; k < header.vertices; ++k) {
-    scene.vertices.emplace_back(metres_per_unit * off_vertex(statements[header.first + k], file.string()));
+    const Statement& statement = statements[header.first + k];
+    scene.vertices.emplace_back(metres_per_unit *
+                                vertex_of(statement.words, 0, at_line(file, statement.line), ": a vertex x y z"));
   }
   LeftOut left_out;
   for (std::size_t k = 0; k < header.faces; ++k) {
@@ -511,10 +496,8 @@ Scene read_ply(const std::filesystem::path& file, double metres_per_unit) {
     }
   }
   for (const Polygon& polygon : scene.polygons) {
-    if (*std::max_element(polygon.corners.begin(), polygon.corners.end()) >= scene.vertices.size()) {
-      throw InputError(polygon.line > 0 ? file.string() + ":" + std::to_string(polygon.line) : file.string(),
-                       "a face has a corner that names no vertex\nhint: export the model again");
-    }
+    if (*std::max_element(polygon.corners.begin(), polygon.corners.end()) >= scene.vertices.size())
+      refuse_corner(scene.file, polygon.line);
   }
   scene.sha256 = sha256({&bytes, 1});
   return scene;

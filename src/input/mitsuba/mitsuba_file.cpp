@@ -4,6 +4,7 @@
 
 #include "input/round_shapes.h"
 #include "input/text.h"
+#include "light/spectra.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,9 +46,6 @@ Eigen::Matrix4d with_linear(const Eigen::Matrix3d& linear) {
   return matrix;
 }
 
-constexpr double first_wavelength = 380;  // nm
-constexpr double last_wavelength = 780;
-
 double lobe(double wavelength, double peak, double below, double above) {
   const double t = (wavelength - peak) / (wavelength < peak ? below : above);
   return std::exp(-t * t / 2);
@@ -88,11 +86,7 @@ double planck(double wavelength, double kelvin) {
   return 1e-9 * first / (std::pow(metres, 5) * std::expm1(second / (metres * kelvin)));
 }
 
-double linear_of_srgb(double value) {
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
-Spectrum linear_of_srgb(const Spectrum& values) {
+Spectrum linear_rgb_of(const Spectrum& values) {
   return values.unaryExpr([](double value) { return linear_of_srgb(value); });
 }
 
@@ -106,7 +100,7 @@ Spectrum of_hexadecimal(const MitsubaFile& file, const pugi::xml_node& node, con
   if (value.size() != 7 || value.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
     refuse(file, node, "a colour as #ff8000");
   const auto part = [&](std::size_t at) { return std::stoi(value.substr(at, 2), nullptr, 16) / 255.0; };
-  return linear_of_srgb(rgb(part(1), part(3), part(5)));
+  return linear_rgb_of(rgb(part(1), part(3), part(5)));
 }
 
 // "400:0.1, 700:0.9"
@@ -131,12 +125,12 @@ MitsubaColour of_black_body(const MitsubaFile& file, const pugi::xml_node& node)
   if (!kelvin || !(*kelvin > 0)) throw InputError(file.place(node), "<blackbody>: expected a temperature above 0 K");
   const std::vector<double> scale = node.attribute("scale") ? file.numbers(node, "scale") : std::vector{1.0};
   std::vector<std::pair<double, double>> samples;
-  for (double wavelength = first_wavelength; wavelength <= last_wavelength; wavelength += 5)
+  for (double wavelength = shortest_wavelength; wavelength <= longest_wavelength; wavelength += 5)
     samples.emplace_back(wavelength, (scale.empty() ? 1 : scale[0]) * planck(wavelength, *kelvin));
   return {rgb_of_wavelengths(samples).max(0), "a black body counts by its radiance per nm"};
 }
 
-// A colour of a checkerboard, which is no texture itself.
+// A color of a checkerboard, which is no texture itself.
 Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const std::string& name, double otherwise) {
   const pugi::xml_node field = file.property(node, name);
   const bool is_texture = std::string_view(field.name()) == "texture";
@@ -183,11 +177,10 @@ std::optional<Spectrum> MitsubaFile::picture(const pugi::xml_node& texture) cons
 
 void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::path& confine, const std::string& where,
                       std::uint32_t line) {
-  constexpr std::size_t most_files = 1000;  // each shape looks for its own
   require_within(confine, file, where);
   std::error_code error;
   open_.push_back(std::filesystem::weakly_canonical(file, error));
-  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 || files_.size() == most_files ||
+  if (std::find(open_.begin(), open_.end() - 1, open_.back()) != open_.end() - 1 || files_.size() == 1000 ||
       open_.size() > reading_limits::nesting)
     throw InputError(where, "includes " + file.string() +
                                 ", which includes this file again, or more than 1,000 files, or is more than 64 deep");
@@ -392,7 +385,7 @@ pugi::xml_node MitsubaFile::nested(const pugi::xml_node& node, const std::string
 Spectrum rgb_of_wavelengths(std::span<const std::pair<double, double>> samples) {
   Vector sum = Vector::Zero();
   Vector white = Vector::Zero();
-  for (double wavelength = first_wavelength; wavelength <= last_wavelength; wavelength += 1) {
+  for (double wavelength = shortest_wavelength; wavelength <= longest_wavelength; wavelength += 1) {
     const Vector weights = rgb_weights(wavelength);
     white += weights;
     sum += sample_at(samples, wavelength) * weights;
@@ -413,7 +406,7 @@ std::optional<MitsubaColour> mitsuba_colour(const MitsubaFile& file, const pugi:
   if (numbers.size() != 1 && numbers.size() != 3) refuse(file, node, "one number, or red, green and blue,");
   const Spectrum colour =
       numbers.size() == 3 ? rgb(numbers[0], numbers[1], numbers[2]) : Spectrum::Constant(3, numbers[0]);
-  return MitsubaColour{kind == "srgb" ? linear_of_srgb(colour) : colour, ""};
+  return MitsubaColour{kind == "srgb" ? linear_rgb_of(colour) : colour, ""};
 }
 
 }  // namespace patchlight

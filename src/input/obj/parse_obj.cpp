@@ -6,7 +6,6 @@
 #include "input/materials.h"
 #include "input/text.h"
 
-#include <charconv>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,9 +17,6 @@
 
 namespace patchlight {
 namespace {
-
-// tinyobjloader counts the corners of a face in one byte.
-constexpr std::size_t most_counted_corners = 255;
 
 // The largest vertex number a face uses, to be compared with the number of vertices when the file has been read: a face
 // may stand above its vertices.
@@ -52,9 +48,8 @@ Point obj_vertex(const std::vector<std::string_view>& statement, const std::stri
 // vertex above.
 std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, const std::string& where) {
   const std::string_view digits = corner.substr(0, corner.find('/'));
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number == 0) {
+  const std::int64_t number = whole_number_in<std::int64_t>(digits).value_or(0);
+  if (number == 0) {
     throw InputError(where, "the corner " + quoted(corner) +
                                 " names no vertex; expected a whole number other than 0, such as 7, 7/2 or 7//3");
   }
@@ -78,7 +73,7 @@ std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& stat
 
 // A vt statement, v being 0 where it has one number; not a number where it has none.
 Eigen::Vector2d picture_point(const std::vector<std::string_view>& statement) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d point(unknown, unknown);
   for (std::size_t k = 0; k < 2 && k + 1 < statement.size(); ++k)
     point[static_cast<Eigen::Index>(k)] = finite_number(statement[k + 1]).value_or(unknown);
@@ -91,9 +86,8 @@ std::uint32_t place_of(std::string_view corner, std::size_t points_above) {
   const std::size_t slash = corner.find('/');
   if (slash == std::string_view::npos) return no_place;
   const std::string_view digits = corner.substr(slash + 1, corner.find('/', slash + 1) - slash - 1);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number == 0) return no_place;
+  const std::int64_t number = whole_number_in<std::int64_t>(digits).value_or(0);
+  if (number == 0) return no_place;
   const std::int64_t place = number > 0 ? number - 1 : static_cast<std::int64_t>(points_above) + number;
   return place >= 0 && place < std::int64_t{no_place} ? static_cast<std::uint32_t>(place) : no_place;
 }
@@ -106,7 +100,7 @@ std::string face_statement(std::span<const std::int64_t> corners) {
 
 // The scan with one more face of at least three corners.
 ObjScan with_face(ObjScan scan, ObjFace face, std::span<const std::int64_t> corners) {
-  if (corners.size() <= most_counted_corners) {
+  if (corners.size() <= 255) {  // tinyobjloader counts them in one byte
     scan.geometry += face_statement(corners);
   } else {
     scan.geometry += face_statement(corners.first(3));
@@ -136,7 +130,7 @@ MtlPane pane_with(const MtlTransparency& stated, const Spectrum& transmittance, 
   return {transmittance, plausible_index(stated.index.value_or(usual_index)), std::move(statement)};
 }
 
-// What goes through by d or Tr, coloured by Tf: one of 0 is a default that would make the material opaque.
+// The transmittance by d or Tr, colored by Tf: one of 0 is a default that would make the material opaque.
 MtlPane filtered(const MtlTransparency& stated, double share, const std::string& statement) {
   const bool is_coloured = stated.filter && (*stated.filter > 0).any() && (*stated.filter != 1).any();
   if (!is_coloured) return pane_with(stated, Spectrum::Constant(3, share), statement);
@@ -148,9 +142,7 @@ bool is_of_mirror(int illumination) { return illumination == 3 || illumination =
 
 // Blender writes Ns 1000 for a roughness of 0, and 250 for its usual one of 0.5.
 bool is_smooth(const MtlReflection& stated) {
-  constexpr double least_exponent = 900;
-  return stated.exponent.value_or(least_exponent) >= least_exponent && stated.roughness <= most_roughness &&
-         !stated.has_textures;
+  return (!stated.exponent || *stated.exponent >= 900) && stated.roughness <= most_roughness && !stated.has_textures;
 }
 
 // Kd and Ke of one material, what lets light through, and what reflects it as a mirror does.
@@ -209,8 +201,8 @@ void take(Statements& material, const MtlLine& statement) {
   if (key == "Pm") material.reflection.metallic = one_number(statement);
 }
 
-// What every material states, read here because tinyobjloader turns what it cannot read into 0 and rounds the rest
-// (0.75 to 0.75 + 1e-16). Of materials with the same name the first counts.
+// The statements of every material, read here because tinyobjloader turns what it cannot read into 0 and rounds the
+// rest (0.75 to 0.75 + 1e-16). Of materials with the same name the first counts.
 std::map<std::string, Statements> read_statements(const std::vector<TextLine>& lines, const std::string& file) {
   std::map<std::string, Statements> materials;
   Statements ignored;

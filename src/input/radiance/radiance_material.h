@@ -13,7 +13,7 @@
 
 namespace patchlight {
 
-/// Radiance's plastic as a matt surface: its gloss, which has no colour, is reflected diffusely as well.
+/// Radiance's plastic as a matt surface: its gloss, which has no color, is reflected diffusely as well.
 Material plastic(std::string name, const Spectrum& reflectance, double specularity);
 
 /// Radiance's metal: a mirror as far as it is glossy where it has no roughness, else matt.
@@ -46,7 +46,7 @@ std::optional<RadianceMaterial> radiance_material(const std::string& kind, const
 /// How many real arguments a kind of material has at least; 0 for one that is not known.
 std::size_t least_arguments(const std::string& kind);
 
-/// What can modify a Radiance surface: a material, or a pattern or texture that stands over one.
+/// A modifier of a Radiance surface: a material, or a pattern or texture that stands over one.
 struct RadianceModifier {
   std::size_t under = 0;  ///< the place of its own modifier, which was defined before; its own place for void
   std::string kind;       ///< "plastic"

@@ -34,12 +34,11 @@ double length_of(const std::string& word, const std::string& where) {
 }
 
 RadianceBox box_of(std::span<const std::string> words, const std::string& where) {
-  constexpr std::size_t least = 5;
-  if (words.size() < least) throw InputError(where, "genbox: expected MATERIAL NAME X Y Z and options");
+  if (words.size() < 5) throw InputError(where, "genbox: expected MATERIAL NAME X Y Z and options");
   RadianceBox box{.material = words[0], .name = words[1]};
   for (std::size_t axis = 0; axis < 3; ++axis)
     box.size[static_cast<Eigen::Index>(axis)] = length_of(words[2 + axis], where);
-  for (std::size_t k = least; k < words.size(); ++k) {
+  for (std::size_t k = 5; k < words.size(); ++k) {
     if (words[k] == "-i") {
       box.is_inward = true;
     } else if (words[k] == "-b" || words[k] == "-r") {
@@ -133,9 +132,8 @@ class XformWords {
   }
 
   std::size_t count() {
-    constexpr double most = 1e6;
     const double value = number();
-    if (!(value >= 0 && value <= most) || std::floor(value) != value)
+    if (!(value >= 0 && value <= 1e6) || std::floor(value) != value)
       refuse(option_ + " has a whole number from 0 to 1,000,000");
     return static_cast<std::size_t>(value);
   }
@@ -173,7 +171,7 @@ std::optional<Eigen::Affine3d> step_of(const std::string& option, XformWords& wo
   return step;
 }
 
-// What moves things, with the count before it: once, so many times over, or, for a copy each, none to so many times.
+// A movement, with the count before it: once, so many times over, or, for a copy each, none to so many times.
 struct Block {
   std::size_t count = 1;
   bool is_array = false;
@@ -204,7 +202,7 @@ std::vector<Eigen::Affine3d> moved_by(const std::vector<Eigen::Affine3d>& places
   return moved;
 }
 
-// Every place, moved on by what each line of a file says.
+// Every place, moved on by each line of a file.
 std::vector<Eigen::Affine3d> moved_by_lines(const std::vector<Eigen::Affine3d>& places,
                                             const std::vector<std::vector<std::string>>& lines,
                                             const std::string& where) {

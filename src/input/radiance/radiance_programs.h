@@ -17,7 +17,7 @@ namespace patchlight {
 /// `where`: an option is not known, a word is missing, or a length does not fit.
 std::vector<RadiancePrimitive> radiance_genbox(std::span<const std::string> arguments, const std::string& where);
 
-/// What Radiance's xform does with the surfaces of files.
+/// The transformation that Radiance's xform applies to the surfaces of files.
 struct RadianceXform {
   std::vector<Eigen::Affine3d> copies = {
       Eigen::Affine3d::Identity()};  ///< where each copy stands; lengths as in the file

@@ -33,10 +33,10 @@ std::array<double, 6> six_numbers(const std::string& where, const std::vector<st
 }
 
 // The line without its comment, and with nothing but spaces between its words.
-std::string plain(std::string_view text) {
+std::string plain(std::string_view text, std::string_view separators) {
   std::string line(text.substr(0, text.find('#')));
   std::replace_if(
-      line.begin(), line.end(), [](char letter) { return letter == ',' || letter == '\r'; }, ' ');
+      line.begin(), line.end(), [&](char letter) { return separators.find(letter) != separators.npos; }, ' ');
   return line;
 }
 
@@ -44,18 +44,6 @@ constexpr const char* expected_line = "expected a wavelength in nm and a value, 
 
 // More lines than an instrument gives, by far.
 constexpr std::size_t longest_spectrum = 100'000;
-
-std::string place_in(const std::filesystem::path& file, const TextLine& line) {
-  return file.string() + ":" + std::to_string(line.number);
-}
-
-// The line without its comment, and with nothing but spaces between its words.
-std::string plain(const TextLine& line) {
-  std::string text = line.text.substr(0, line.text.find('#'));
-  std::replace_if(
-      text.begin(), text.end(), [](char letter) { return letter == ',' || letter == ';'; }, ' ');
-  return text;
-}
 
 // The spectrum with one more value.
 SampledSpectrum with_value(SampledSpectrum spectrum, double wavelength, double value, const std::string& where) {
@@ -80,14 +68,14 @@ SampledSpectrum of_columns(const std::vector<TextLine>& lines, const std::filesy
   SampledSpectrum spectrum;
   bool may_be_heading = true;
   for (const TextLine& line : lines) {
-    const std::string text = plain(line);
+    const std::string text = plain(line.text, ",;");
     const std::vector<std::string_view> found = words(text);
     if (found.empty()) continue;
     const auto is_number = [](std::string_view word) { return finite_number(word).has_value(); };
     const bool has_number = std::any_of(found.begin(), found.end(), is_number);
     if (std::exchange(may_be_heading, false) && !has_number) continue;
     const std::optional<double> wavelength = finite_number(found[0]);
-    const std::string where = place_in(file, line);
+    const std::string where = at_line(file, line.number);
     if (found.size() != 2)
       throw InputError(where, "found " + std::to_string(found.size()) + " values; " + expected_line);
     const std::optional<double> value = finite_number(found[1]);
@@ -109,8 +97,6 @@ std::optional<double> keyword(const std::vector<TextLine>& lines, std::string_vi
   }
   return std::nullopt;
 }
-
-bool is_cgats(const std::vector<TextLine>& lines) { return keyword(lines, "SPECTRAL_BANDS").has_value(); }
 
 // Where the values stand among the words of a line of data: the first field SPEC_... of the format.
 std::size_t first_field(const std::vector<TextLine>& lines) {
@@ -156,9 +142,10 @@ SampledSpectrum of_cgats(const std::vector<TextLine>& lines, const std::filesyst
       if (static_cast<double>(spectrum.values.size()) == *bands) return spectrum;
       const std::optional<double> value = finite_number(word);
       if (!value)
-        throw InputError(place_in(file, line), "found '" + std::string(word) + "'; expected a value of the spectrum");
+        throw InputError(at_line(file, line.number),
+                         "found '" + std::string(word) + "'; expected a value of the spectrum");
       const double wavelength = *begin + step * static_cast<double>(spectrum.values.size());
-      spectrum = with_value(std::move(spectrum), wavelength, *value / norm, place_in(file, line));
+      spectrum = with_value(std::move(spectrum), wavelength, *value / norm, at_line(file, line.number));
     }
   }
   if (static_cast<double>(spectrum.values.size()) < *bands)
@@ -169,24 +156,13 @@ SampledSpectrum of_cgats(const std::vector<TextLine>& lines, const std::filesyst
 }
 
 // Fields of the two kinds of lines that are used, from 0. EnergyPlus, Auxiliary Programs, chapter on weather data.
+// The time zone is in hours, east positive, and the hour from 1 to 24 the one that ends then.
 namespace location {
-constexpr std::size_t latitude = 6;
-constexpr std::size_t longitude = 7;
-constexpr std::size_t time_zone = 8;  // hours, east positive
-}  // namespace location
+enum Field : std::size_t { latitude = 6, longitude, time_zone };
+}
 namespace data {
-constexpr std::size_t year = 0;
-constexpr std::size_t month = 1;
-constexpr std::size_t day = 2;
-constexpr std::size_t hour = 3;  // 1 to 24, the one that ends then
-constexpr std::size_t dew_point = 7;
-constexpr std::size_t direct_normal = 14;
-constexpr std::size_t diffuse_horizontal = 15;
-}  // namespace data
-
-// What stands for a missing value.
-constexpr double missing_irradiance = 9999;
-constexpr double missing_dew_point = 99.9;
+enum Field : std::size_t { year, month, day, hour, dew_point = 7, direct_normal = 14, diffuse_horizontal };
+}
 
 struct Line {
   std::string where;
@@ -204,19 +180,13 @@ struct Line {
 };
 
 Line split(const TextLine& line, const std::string& file) {
-  Line split{file + ":" + std::to_string(line.number), {}};
-  std::size_t begin = 0;
-  while (begin <= line.text.size()) {
-    const std::size_t end = std::min(line.text.find(',', begin), line.text.size());
-    split.fields.push_back(line.text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return split;
+  const std::vector<std::string_view> fields = between_commas(line.text);
+  return {at_line(file, line.number), {fields.begin(), fields.end()}};
 }
 
 double irradiance(const Line& line, std::size_t field, const std::string& what) {
   const double value = line.number(field, what);
-  if (value >= 0 && value < missing_irradiance) return value;
+  if (value >= 0 && value < 9999) return value;  // which stands for a missing value
   throw InputError(line.where, "the " + what + " of this hour is " + line.fields[field] +
                                    "; expected W/m^2 from 0 to 9998. Choose an hour where it is known");
 }
@@ -243,7 +213,7 @@ WeatherHour weather_of(const Line& place, const Line& line, const Instant& local
   weather.solar.diffuse_horizontal = irradiance(line, data::diffuse_horizontal, "diffuse horizontal irradiance");
   weather.solar.day_of_year = day_of_year(weather.middle);
   const double dew_point = within(line, data::dew_point, -100, 100, "the dew point in degrees Celsius");
-  if (dew_point < missing_dew_point) weather.solar.precipitable_water = precipitable_water(dew_point);
+  if (dew_point < 99.9) weather.solar.precipitable_water = precipitable_water(dew_point);
   return weather;
 }
 
@@ -255,7 +225,7 @@ SensorGroup parse_points(std::string_view text, const std::filesystem::path& fil
   group.file = file.string();
   for (std::uint32_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string line = plain(text.substr(0, end));
+    const std::string line = plain(text.substr(0, end), ",\r");
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::vector<std::string_view> found = words(line);
     if (found.empty()) continue;
@@ -281,7 +251,7 @@ SensorGroup read_points(const std::filesystem::path& file, double metres_per_uni
 
 SampledSpectrum parse_spectrum(std::string_view text, const std::filesystem::path& file) {
   const std::vector<TextLine> lines = logical_lines(text);
-  SampledSpectrum spectrum = is_cgats(lines) ? of_cgats(lines, file) : of_columns(lines, file);
+  SampledSpectrum spectrum = keyword(lines, "SPECTRAL_BANDS") ? of_cgats(lines, file) : of_columns(lines, file);
   if (spectrum.values.empty()) throw InputError(file.string(), std::string("found no spectrum; ") + expected_line);
   spectrum.name = file.filename().string();
   return spectrum;

@@ -49,7 +49,7 @@ WeatherHour parse_epw(const std::string& text, const std::string& file, const In
 Daylight daylight_of(const WeatherHour& weather, const Vector& up, const Vector& north, Eigen::Index bands);
 
 /// Reads a photometric file, IES LM-63 of 1986, 1991, 1995 or 2002: types A, B and C, TILT=NONE or INCLUDE, relative
-/// and absolute photometry, dimensions in feet or metres. The candela are multiplied by the file's multiplier, its
+/// and absolute photometry, dimensions in feet or meters. The candela are multiplied by the file's multiplier, its
 /// ballast factor and its ballast-lamp factor. \throws InputError naming the file and line.
 PhotometricWeb read_ies(const std::filesystem::path& file);
 

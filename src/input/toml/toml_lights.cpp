@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 enum class LuminaireKind { point, spot, ies, sphere };
 
-// The colour of a light whose lumens are given: any multiple of it.
+// The color of a light whose lumens are given: any multiple of it.
 Spectrum colour_of(const TomlValue& table) {
   const TomlValue* const value = find(table, "color");
   if (value == nullptr) return Spectrum::Ones(1);
@@ -126,11 +126,6 @@ LuminaireEntry entry_of(const TomlValue& table, const TomlFrame& frame) {
   return entry;
 }
 
-double within(const TomlValue& value, double low, double high, const std::string& expected) {
-  if (!(number(value, expected) >= low && value.number <= high)) refuse(value, expected);
-  return value.number;
-}
-
 int whole(const TomlValue& value, int low, int high) {
   const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   if (within(value, low, high, expected) != std::floor(value.number)) refuse(value, expected);
@@ -216,11 +211,6 @@ WeatherHour weather_of(const TomlValue& table, const TomlFrame& frame) {
   return read_epw(file, month, day, hour);
 }
 
-double ground_of(const TomlValue& table) {
-  allow_keys(table, {"reflectance"});
-  return within(required(table, "reflectance", "0 to 1"), 0, 1, "0 to 1");
-}
-
 }  // namespace
 
 std::vector<LuminaireEntry> luminaires_of(const TomlValue& root, const TomlFrame& frame) {
@@ -270,7 +260,10 @@ LightEntries lights_of(const TomlValue& root, const TomlFrame& frame) {
     lights.sky->measured->day_of_year = day_of_year(lights.sun->instant);
   }
   if (weather) lights.weather = weather_of(*weather, frame);
-  if (ground) lights.ground_reflectance = ground_of(*ground);
+  if (ground) {
+    allow_keys(*ground, {"reflectance"});
+    lights.ground_reflectance = within(required(*ground, "reflectance", "0 to 1"), 0, 1, "0 to 1");
+  }
   // Measured irradiances become visible light by their luminous efficacy.
   if (weather || (lights.sky && lights.sky->measured)) lights.photometric = true;
   return lights;

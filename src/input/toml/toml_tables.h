@@ -13,7 +13,7 @@
 
 namespace patchlight {
 
-/// What the tables [[model]] of a scene file stand in.
+/// The scene file around the tables [[model]].
 struct TomlFrame {
   std::filesystem::path file;          ///< the scene file
   std::filesystem::path confine = {};  ///< the folder in which the files that it names must lie; empty for any
@@ -37,7 +37,7 @@ bool is_by_wavelength(const TomlValue& value);
 /// A reflectance or transmittance by wavelength: a file that read_spectrum() reads. \throws InputError.
 std::shared_ptr<const SampledSpectrum> sampled_share(const TomlValue& value, const TomlFrame& frame);
 
-/// What a lamp emits by wavelength, per nm: such a file.  \throws InputError.
+/// The exitance of a lamp by wavelength, per nm: such a file. \throws InputError.
 std::shared_ptr<const SampledSpectrum> sampled_exitance(const TomlValue& value, const TomlFrame& frame);
 
 /// How light is spread: such a file, "D65", "A", {kelvin = 2700} of a black body, or {daylight = 5500}. \throws

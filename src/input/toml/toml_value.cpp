@@ -15,12 +15,7 @@
 namespace patchlight {
 namespace {
 
-bool is_spectrum(const TomlValue& value) {
-  if (value.kind == TomlValue::Kind::number) return true;
-  return value.kind == TomlValue::Kind::list && value.items.size() == 3;
-}
-
-// What follows the string or comment that the text begins with; the whole text when it begins with neither.
+// The rest behind the string or comment that the text begins with; the whole text when it begins with neither.
 std::string_view after_string(std::string_view text) {
   if (text[0] == '#') return text.substr(std::min(text.find('\n'), text.size()));
   if (text[0] != '"' && text[0] != '\'') return text;
@@ -210,6 +205,11 @@ double number(const TomlValue& value, const std::string& expected) {
   return value.number;
 }
 
+double within(const TomlValue& value, double low, double high, const std::string& expected) {
+  if (!(number(value, expected) >= low && value.number <= high)) refuse(value, expected);
+  return value.number;
+}
+
 double positive(const TomlValue& value) {
   if (!(number(value, "a number above 0") > 0)) refuse(value, "a number above 0");
   return value.number;
@@ -236,10 +236,8 @@ Vector direction(const TomlValue& value) {
 }
 
 Spectrum spectrum(const TomlValue& value) {
-  const std::string expected = "a number for all bands, or three: [R, G, B]";
-  if (!is_spectrum(value)) refuse(value, expected);
   if (value.kind == TomlValue::Kind::number) return Spectrum::Constant(1, not_negative(value));
-  const std::vector<double> values = numbers(value, 3, expected);
+  const std::vector<double> values = numbers(value, 3, "a number for all bands, or three: [R, G, B]");
   for (const TomlValue& item : value.items) not_negative(item);
   return rgb(values[0], values[1], values[2]);
 }
