@@ -6,7 +6,6 @@
 #include "patchlight/views/picture.h"
 
 #include "archive/form_factor_files.h"
-#include "cli/exit_code.h"
 #include "cli/messages.h"
 #include "output/plot/write_sensor_map.h"
 #include "study/compare.h"
@@ -48,14 +47,23 @@ struct LightmapSettings {
   LightmapOptions options;
 };
 
-/// What `patchlight solve` or `patchlight relight` is asked to do. A path that is empty stands for an output that is
+/// The models that a command reads, together one scene. A path that is empty stands, here and below, for a file that is
 /// not wanted.
-struct SolveArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene, "-" is the standard input; none: the scene that
-                                              ///< is stored with the form factors
+struct ModelArguments {
+  std::vector<std::filesystem::path> models;  ///< "-" is the standard input
   ReadOptions read;
-  Request request;  ///< metres
+};
 
+/// A scene that is solved, or prepared for it.
+struct RunArguments : ModelArguments {
+  Request request;           ///< meters
+  std::string command_line;  ///< for the record
+  bool quiet = false;
+};
+
+/// Arguments of `patchlight solve` or `patchlight relight`; without models the scene is the one stored with the form
+/// factors.
+struct SolveArguments : RunArguments {
   std::vector<std::filesystem::path> results;  ///< .vtp, .vtu, .ply, .glb
   std::filesystem::path series;                ///< .pvd
   std::filesystem::path report;                ///< .json
@@ -64,7 +72,7 @@ struct SolveArguments {
   LightmapSettings lightmap;
 
   std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
-  std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts; empty: none
+  std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts
 
   std::filesystem::path points;            ///< input: where irradiance is wanted, besides the scene's sensors
   std::optional<double> ambient_distance;  ///< m; none: results have no ambient occlusion
@@ -72,24 +80,16 @@ struct SolveArguments {
   MapOptions map;                                     ///< of those that are .svg or .png
   std::filesystem::path default_points_output;        ///< .csv, where sensors are but no output for them is named
 
-  bool solver_given = false;  ///< Request::solver has what was asked for
+  bool solver_given = false;  ///< the user chose Request::solver
   bool discards = false;      ///< a run that is stopped writes nothing
-  Verbosity verbosity = Verbosity::normal;
-  std::string command_line;  ///< for the record
+  bool verbose = false;
 };
 
-/// What `patchlight plan` is asked to do.
-struct PlanArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
-  Request request;
-  std::filesystem::path json;  ///< .json; empty when it is not wanted
+struct PlanArguments : RunArguments {
+  std::filesystem::path json;  ///< .json
 };
 
-/// What `patchlight check` is asked to do. A path that is empty stands for an output that is not wanted.
-struct CheckArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
+struct CheckArguments : ModelArguments {
   std::optional<Sides> sides;              ///< whose number is wanted, if any
   std::filesystem::path problems;          ///< .vtp
   PictureSettings picture;                 ///< file, camera, views and size of it
@@ -99,78 +99,47 @@ struct CheckArguments {
   bool all = false;                        ///< lists everything, not what fits on a screen
 };
 
-/// What `patchlight init` is asked to do.
-struct InitArguments {
-  std::vector<std::filesystem::path> models;
-  ReadOptions read;
+struct InitArguments : ModelArguments {
   std::filesystem::path output;  ///< .toml
 };
 
-/// What `patchlight form-factors` is asked to do.
-struct FormFactorArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
-  Request request;
+struct FormFactorArguments : RunArguments {
   std::filesystem::path output;  ///< a folder, or a file .npy or .mtx for the matrix alone
   MatrixFormat format = MatrixFormat::npy;
   std::optional<GroupBy> by;  ///< the table of groups that is wanted
-  bool quiet = false;
-  std::string command_line;  ///< for the record
 };
 
-/// What `patchlight compare-solvers` is asked to do.
-struct ComparisonArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
-  Request request;
+struct ComparisonArguments : RunArguments {
   CompareOptions options;
   std::filesystem::path output;  ///< a folder
-  std::filesystem::path page;    ///< .html; empty when it is not wanted
-  bool quiet = false;
-  std::string command_line;  ///< for the record
+  std::filesystem::path page;    ///< .html
 };
 
-/// What `patchlight convergence` is asked to do.
-struct ConvergenceArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
-  Request request;
+struct ConvergenceArguments : RunArguments {
   StudyOptions options;
   std::filesystem::path output;  ///< a folder
-  std::filesystem::path page;    ///< .html; empty when it is not wanted
-  bool quiet = false;
-  std::string command_line;  ///< for the record
+  std::filesystem::path page;    ///< .html
 };
 
-/// What `patchlight crosscheck` is asked to do.
-struct CrosscheckArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
-  Request request;
+struct CrosscheckArguments : RunArguments {
   VerifyOptions options;
   std::optional<double> bar;   ///< the relative standard error that every irradiance is granted; none: its error bars
-  std::filesystem::path json;  ///< .json; empty when it is not wanted
-  bool quiet = false;
-  std::string command_line;  ///< for the record
+  std::filesystem::path json;  ///< .json
 };
 
-/// What `patchlight selftest` is asked to do.
 struct SelftestArguments {
-  std::filesystem::path json;   ///< .json; empty when it is not wanted
+  std::filesystem::path json;   ///< .json
   bool json_on_stdout = false;  ///< instead of the table
   int threads = 0;              ///< 0: all processors
 };
 
-/// What `patchlight render` is asked to do.
-struct RenderArguments {
-  std::vector<std::filesystem::path> models;  ///< together one scene; "-" is the standard input
-  ReadOptions read;
+struct RenderArguments : ModelArguments {
   std::filesystem::path solution;  ///< input: .vtp
-  std::filesystem::path page;      ///< .html; empty when it is not wanted
+  std::filesystem::path page;      ///< .html
   PictureSettings picture;
   LightmapSettings lightmap;
-  std::filesystem::path observers;   ///< .csv; empty: not wanted
-  std::filesystem::path difference;  ///< input: another solution, .vtp; empty: none
+  std::filesystem::path observers;   ///< .csv
+  std::filesystem::path difference;  ///< input: another solution, .vtp
   int threads = 0;                   ///< 0: all processors
   bool quiet = false;
   std::string command_line;  ///< for the record

@@ -1,14 +1,25 @@
 #include "base/near_match.h"
+#include "base/parallel.h"
 #include "base/rounded.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/picture.h"
+#include "cli/output_options.h"
+#include "cli/progress.h"
+#include "cli/render.h"
+#include "cli/summary.h"
+#include "mesh/nested_mesh.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_checks.h"
+#include "output/report/write_survey.h"
+#include "output/vtk/write_problems.h"
 #include "output/vtk/write_vtk.h"
+#include "pipeline/expected_cost.h"
+#include "pipeline/first_mesh.h"
+#include "pipeline/second_mesh.h"
+#include "plan/check_request.h"
+#include "plan/memory.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
 #include "scene/sensor_grid.h"
@@ -19,19 +30,15 @@
 #include <iostream>
 #include <set>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace patchlight::cli {
 namespace {
 
 // Of lengths and areas.
 constexpr int digits = 4;
-
-// So many materials, objects, problems and notes are listed unless all are asked for: together they fit on a screen.
-constexpr std::size_t most_materials = 12;
-constexpr std::size_t most_objects = 6;
-constexpr std::size_t most_notes = 10;
-constexpr std::size_t most_rooms = 6;
 
 // "and 171 more (--all lists them)", or nothing.
 std::string rest_line(std::size_t count, std::size_t shown) {
@@ -47,11 +54,9 @@ std::string listed(const Values& values, const char* separator) {
 }
 
 std::string size_line(const Scene& scene, const SceneReport& report) {
-  std::ostringstream text;
-  text << "size: " << listed(Vector(report.bounds.sizes()), " x ") << " m, from (" << listed(report.bounds.min(), ", ")
-       << ") to (" << listed(report.bounds.max(), ", ") << "), one model unit being "
-       << rounded(scene.metres_per_unit, digits) << " m\n";
-  return text.str();
+  return "size: " + listed(Vector(report.bounds.sizes()), " x ") + " m, from (" + listed(report.bounds.min(), ", ") +
+         ") to (" + listed(report.bounds.max(), ", ") + "), one model unit being " +
+         rounded(scene.metres_per_unit, digits) + " m\n";
 }
 
 std::string counts_lines(const SceneReport& report, std::size_t faces) {
@@ -78,38 +83,26 @@ std::string sides_lines(const SceneReport& report) {
   return text.str();
 }
 
-// "; transmittance 0.8, index 1.52" of a pane.
-std::string pane_part(const Material& material) {
-  if (!(material.transmittance > 0).any()) return {};
-  return "; transmittance " + listed(material.transmittance, ", ") + ", index " + rounded(material.index, digits);
+// "; specular reflectance 0.9, 0.9, 0.9" of a mirror; nothing without any.
+std::string part(const char* name, const Spectrum& values) {
+  if (!(values > 0).any()) return {};
+  return std::string("; ") + name + ' ' + listed(values, ", ");
 }
 
-// "; specular reflectance 0.9, 0.9, 0.9" of a mirror.
-std::string mirror_part(const Material& material) {
-  if (!(material.specular_reflectance > 0).any()) return {};
-  return "; specular reflectance " + listed(material.specular_reflectance, ", ");
-}
-
-// "; diffuse transmittance 0.4" of a sheet.
-std::string sheet_part(const Material& material) {
-  if (!(material.diffuse_transmittance > 0).any()) return {};
-  return "; diffuse transmittance " + listed(material.diffuse_transmittance, ", ");
-}
-
-// A table of what is called so, with columns aligned.
+// The width of a column with these names, at most 40.
 std::size_t width_of(const std::vector<std::string>& names) {
   std::size_t width = 0;
   for (const std::string& name : names) width = std::max(width, shown_name(name).size());
   return std::min<std::size_t>(width, 40);
 }
 
-// The largest first.
+// The largest first. The lists of materials, objects, rooms and problems fit on one screen unless all are asked for.
 std::string material_lines(const SceneReport& report, bool all) {
   std::vector<MaterialFacts> materials = report.materials;
-  if (!all && materials.size() > most_materials) {
+  if (!all && materials.size() > 12) {
     std::stable_sort(materials.begin(), materials.end(),
                      [](const MaterialFacts& a, const MaterialFacts& b) { return a.area > b.area; });
-    materials.resize(most_materials);
+    materials.resize(12);
   }
   std::vector<std::string> names;
   for (const MaterialFacts& facts : materials) names.push_back(facts.material.name);
@@ -117,9 +110,12 @@ std::string material_lines(const SceneReport& report, bool all) {
   text << "materials: " << report.materials.size() << '\n';
   for (const MaterialFacts& facts : materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width_of(names))) << shown_name(facts.material.name)
-         << "  reflectance " << listed(facts.material.reflectance, ", ") << mirror_part(facts.material)
-         << pane_part(facts.material) << sheet_part(facts.material) << "; " << counted(facts.faces, "face") << ", "
-         << rounded(facts.area, digits) << " m^2\n";
+         << "  reflectance " << listed(facts.material.reflectance, ", ")
+         << part("specular reflectance", facts.material.specular_reflectance)
+         << part("transmittance", facts.material.transmittance)
+         << ((facts.material.transmittance > 0).any() ? ", index " + rounded(facts.material.index, digits) : "")
+         << part("diffuse transmittance", facts.material.diffuse_transmittance) << "; " << counted(facts.faces, "face")
+         << ", " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str() + rest_line(report.materials.size(), materials.size());
 }
@@ -128,7 +124,7 @@ std::string material_lines(const SceneReport& report, bool all) {
 std::string object_lines(const SceneReport& report, bool all) {
   const std::vector<ObjectFacts>& objects = all ? report.objects : report.classes;
   if (objects.size() < 2) return {};
-  const std::size_t shown = all ? objects.size() : std::min(objects.size(), most_objects);
+  const std::size_t shown = all ? objects.size() : std::min<std::size_t>(objects.size(), 6);
   std::vector<std::string> names;
   for (std::size_t k = 0; k < shown; ++k) names.push_back(objects[k].name);
   std::ostringstream text;
@@ -151,7 +147,7 @@ std::string room_lines(const Scene& scene, bool all) {
     if (!room.storey.empty()) storeys.insert(room.storey);
   }
   std::stable_sort(rooms.begin(), rooms.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  const std::size_t shown = all ? rooms.size() : std::min(rooms.size(), most_rooms);
+  const std::size_t shown = all ? rooms.size() : std::min<std::size_t>(rooms.size(), 6);
   std::string text = "rooms: " + std::to_string(rooms.size());
   if (!storeys.empty()) text += " on " + counted(storeys.size(), "storey");
   for (std::size_t k = 0; k < shown; ++k) {
@@ -214,7 +210,7 @@ std::string problem_lines(const SceneReport& report, bool all) {
   }
   std::string text = "problems: " + counted(count[0], "error") + ", " + counted(count[1], "warning") + ", " +
                      counted(count[2], "remark") + '\n';
-  const std::size_t shown = all ? lines.size() : std::min(lines.size(), most_notes);
+  const std::size_t shown = all ? lines.size() : std::min<std::size_t>(lines.size(), 10);
   for (std::size_t k = 0; k < shown; ++k) text += "  " + lines[k] + '\n';
   return text + rest_line(lines.size(), shown);
 }
@@ -254,16 +250,58 @@ void write_model_picture(const CheckArguments& arguments, const Scene& scene) {
   write_picture_file(arguments.picture.file, ambient_picture(scene, options, distance), scene);
 }
 
+const char* word_for(const Decision& decision) {
+  if (decision.forced) return decision.simulate ? "on, by force" : "off, by force";
+  return decision.simulate ? "on" : "off";
+}
+
+// Those that say which surfaces take part, and no property of light.
+bool is_of_surfaces(Effect effect) { return effect == Effect::reach || effect == Effect::backs; }
+
+// Two lines for each: the fact that decides, and its cost or saving.
+std::string lines_of(const std::vector<Decision>& decisions, bool of_surfaces) {
+  std::ostringstream text;
+  for (const Decision& decision : decisions) {
+    if (is_of_surfaces(decision.effect) != of_surfaces) continue;
+    text << std::left << std::setw(17) << name_of(decision.effect) << word_for(decision) << ": "
+         << with_option_names(decision.reason) << '\n'
+         << std::setw(17) << "" << (decision.simulate ? "takes: " : "saves: ") << decision.saving << '\n';
+  }
+  return text.str();
+}
+
+std::string cost_lines(const ExpectedCost& cost) {
+  const std::string first = cost.of_first_mesh ? "patches and shadow rays are chosen while solving; the first mesh "
+                                                 "alone is expected to take "
+                                               : "expected: ";
+  return first + std::to_string(cost.patches) + " patches, " + rounded(cost.bytes / 1e9, 2) + " GB, about " +
+         rounded(cost.seconds(), 2) + " s on " + std::to_string(cost.threads) +
+         (cost.threads == 1 ? " thread" : " threads") + " (an estimate, right to a factor of two or so)\n" +
+         "processor seconds: form factors " + rounded(cost.form_factor_seconds, 2) + ", direct light " +
+         rounded(cost.direct_light_seconds, 2) + ", closure and solution " + rounded(cost.solve_seconds, 2) + '\n';
+}
+
+// The costs that the estimate leaves out.
+std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
+  const auto patches = static_cast<PatchIndex>(cost.patches);
+  const bool has_second_mesh = makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan);
+  const std::string sensors = cost.sensors == 0
+                                  ? ""
+                                  : counted(cost.sensors, "sensor") + " of about " + rounded(cost.sensor_seconds, 2) +
+                                        (cost.of_first_mesh ? " processor seconds or more, " : " processor seconds, ");
+  return std::string("in addition: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
+         (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
+         "requested images and pages" +
+         (plan.accuracy.seconds ? "; --time-limit does not include sensors and images" : "") + "\n";
+}
+
 }  // namespace
 
 ExitCode check(const CheckArguments& arguments) {
-  for (const auto* file : {&arguments.json, &arguments.problems, &arguments.picture.file}) {
-    if (!file->empty()) check_writable(*file);
-  }
+  for (const OutputFile& output : outputs_of(arguments))
+    if (!output.file.empty()) check_writable(output.file);
   const Scene scene = read_scene(arguments.models, arguments.read);
-  require_not_read(
-      {{"--json", arguments.json}, {"--problems", arguments.problems}, {"--picture", arguments.picture.file}},
-      scene.inputs);
+  require_not_read(outputs_of(arguments), scene.inputs);
   SceneReport report = survey(scene);
   if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
 
@@ -282,6 +320,30 @@ ExitCode check(const CheckArguments& arguments) {
               << problem_lines(report, arguments.all) << std::flush;
   }
   if (!report.usable) print_message("note", scene.file + ": no light source: " + report.first_light->advice);
+  return good;
+}
+
+ExitCode plan(const PlanArguments& arguments) {
+  if (!arguments.json.empty()) check_writable(arguments.json);
+  const ThreadLimit limit(arguments.request.resources.threads);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  print_scene_warnings(scene);
+  require_not_read({{"--json", arguments.json}}, scene.inputs);
+  check(arguments.request, scene);
+  const Plan planned = make_plan(scene, arguments.request);
+  require_memory(scene, arguments.request, planned);
+  const NestedMesh mesh = first_mesh(scene, planned);
+  require_memory(mesh.patches.size(), arguments.request, planned);
+  const Plan plan = with_note_on_second_mesh(planned, mesh.patches.size());
+  const ExpectedCost cost = expected_cost(scene, plan, mesh.patches);
+
+  const WritingGuard guard;
+  if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
+  print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
+  std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
+            << "effects of light\n"
+            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
+            << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(plan, cost) << std::flush;
   return good;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/arguments.h"
-#include "cli/exit_code.h"
+#include "cli/messages.h"
 #include "validate/validate.h"
 
 #include <span>

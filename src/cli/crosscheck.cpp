@@ -2,11 +2,9 @@
 #include "base/rounded.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
-#include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
-#include "cli/run_options.h"
 #include "cli/summary.h"
-#include "cli/text_table.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_checks.h"
 #include "pipeline/world.h"
@@ -22,9 +20,6 @@
 
 namespace patchlight::cli {
 namespace {
-
-// So many of the checked patches are shown, those that differ most.
-constexpr std::size_t shown = 10;
 
 std::string position(const Point& point) {
   return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
@@ -50,10 +45,9 @@ std::vector<Difference> worst_first(const SolvedAndTraced& compared) {
   return differences;
 }
 
-// Beyond so many standard errors more of them tell nothing more.
+// Beyond 100 standard errors the number no longer matters.
 std::string standard_errors(double z, int places) {
-  constexpr double most = 100;
-  if (std::abs(z) > most) return z > 0 ? "> 100" : "< -100";
+  if (std::abs(z) > 100) return z > 0 ? "> 100" : "< -100";
   return rounded(z, places);
 }
 
@@ -64,7 +58,7 @@ std::string table(const Scene& scene, const PatchMesh& mesh, const Verification&
   const Field z = deviations_by_noise(verification);
   const Field with_bar = deviations(verification);
   for (const auto& [i, band, size] : worst_first(verification)) {
-    if (rows.size() > shown) break;
+    if (rows.size() > 10) break;
     const PatchIndex patch = verification.patches[static_cast<std::size_t>(i)];
     const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
     rows.push_back(
@@ -89,14 +83,13 @@ Field known_bars(const ErrorBars& bars) {
   return (bars.mesh.square() + bars.form_factor.square()).sqrt();
 }
 
-// What the irradiances are granted.
+// The error that the irradiances may have.
 std::string bars(const std::optional<double>& bar, const Simulation& simulation) {
   if (bar) return "a bar of " + percent(*bar) + " % of the irradiance, or of its mean where that is larger";
   const AccuracyStep& errors = simulation.accuracy.back();
   const bool solver_known = std::isfinite(errors.solver);
-  const double all = solver_known ? errors.total : std::hypot(errors.mesh, errors.form_factor);
-  return "the error bars of the patches, " + percent(all, 2) + " % as a whole (mesh " + percent(errors.mesh, 2) +
-         ", form factors " + percent(errors.form_factor, 2) + ", solver " +
+  return "the error bars of the patches, " + percent(known_error(errors), 2) + " % as a whole (mesh " +
+         percent(errors.mesh, 2) + ", form factors " + percent(errors.form_factor, 2) + ", solver " +
          (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
 }
 
@@ -106,7 +99,7 @@ std::string typical_error(const VerifiedPart& part) {
   const double error = part.error.maxCoeff(&band);
   const double noise = part.noise[band];
   if (!std::isfinite(error) || !std::isfinite(noise)) return {};
-  // Twice what the square is off by chance.
+  // Twice the random error of the square.
   const double told = 2 * noise * noise * std::sqrt(2 / static_cast<double>(part.rows.size()));
   const bool is_hidden = error * error < told;
   return "typical error of a patch " +
@@ -114,12 +107,12 @@ std::string typical_error(const VerifiedPart& part) {
                     : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out");
 }
 
-// A line with a figure, and behind it what it tells where that is wanted.
+// A line with a figure, and behind it its meaning where that is wanted.
 std::string figure(const std::string& what, const char* tells, bool explained) {
   return what.empty() ? "" : "  " + what + (explained ? std::string(": ") + tells : "") + '\n';
 }
 
-// What the differences of a part come to. From what is stated to what is found.
+// The differences of a part: first the bars, then the deviations found.
 std::string figures_of(const VerifiedPart& part, bool explained) {
   Eigen::Index band = 0;
   part.offset.abs().maxCoeff(&band);
@@ -216,27 +209,21 @@ std::string verdict(const Verification& verification, const std::string& granted
   return text.str();
 }
 
-std::string after_first(const Verification& verification) {
-  if (verification.first_paths == 0) return {};
-  return "with " + std::to_string(verification.first_paths) +
-         " paths each they disagreed, mostly by the noise of these: traced again with more\n";
-}
-
-// What p tells.
-std::string on_probability() {
-  return "p is the probability of differences this large where bars and paths are right; below " +
-         rounded(least_probability, 3) + " they disagree\n";
-}
-
-// All that is said: the verdict, what was checked, what that comes to, and the patches that differ most.
+// The whole answer: verdict, extent of the check, figures, and the patches that differ most.
 std::string answer(const Scene& scene, const Simulation& simulation, const Verification& verification,
                    const std::string& verdict, double seconds) {
   std::ostringstream text;
   text << verdict << '\n'
-       << on_probability() << shown_name(scene.file) << ": " << verification.patches.size() << " of "
-       << simulation.mesh.size() << " patches, " << verification.paths.paths << " paths each, "
+       << "p is the probability of differences this large where bars and paths are right; below "
+       << rounded(least_probability, 3) << " they disagree\n"
+       << shown_name(scene.file) << ": " << verification.patches.size() << " of " << simulation.mesh.size()
+       << " patches, " << verification.paths.paths << " paths each, "
        << rounded(static_cast<double>(verification.paths.rays), 3) << " rays in " << rounded(seconds, 3) << " s\n"
-       << after_first(verification) << figures(verification) << sides_left_out(scene, verification)
+       << (verification.first_paths == 0 ? ""
+                                         : "with " + std::to_string(verification.first_paths) +
+                                               " paths each they disagreed, mostly by the noise of these: traced again "
+                                               "with more\n")
+       << figures(verification) << sides_left_out(scene, verification)
        << "those that differ most, each in its worst band, irradiance in W/m^2:\n"
        << table(scene, simulation.mesh, verification);
   return text.str();
@@ -260,7 +247,7 @@ void tell(const CrosscheckArguments& arguments, const Scene& scene, const Simula
 ExitCode crosscheck(const CrosscheckArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
-  if (const auto note = note_on_accuracy(arguments.request); note && !arguments.quiet) print_message("note", *note);
+  print_note_on_accuracy(arguments.request, arguments.quiet);
   ProgressLine line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(line);
 

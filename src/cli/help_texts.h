@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/App.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,5 +39,17 @@ const OptionText& option_text(std::string_view command, std::string_view name);
 
 /// "{solvers}", "{formats}" and other names of lists and numbers replaced by these.
 std::string filled_in(std::string_view text);
+
+/// The commands in their groups: `patchlight --help`.
+std::string tool_help();
+
+/// Usage, examples and the options that most people use, at most 50 lines: `patchlight COMMAND -h`.
+std::string short_help(const CLI::App& command);
+
+/// All options with their details, the advanced ones last: `patchlight COMMAND --help`.
+std::string full_help(const CLI::App& command);
+
+/// `patchlight help TOPIC`: help of a command, or a page of the documentation. \throws InputError without such a page.
+std::string topic_help(const CLI::App& tool, const std::string& topic);
 
 }  // namespace patchlight::cli

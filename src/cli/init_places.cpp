@@ -1,12 +1,18 @@
 #include "cli/init_places.h"
 
+#include "patchlight/base/error.h"
 #include "patchlight/scene/sides.h"
 
 #include "accuracy/spaces.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
 #include "gather/sensor_places.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
+#include "output/file/whole_file.h"
+#include "plan/survey.h"
 #include "scene/solids.h"
 #include "visibility/occluder.h"
 
@@ -14,26 +20,20 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iostream>
 #include <limits>
 #include <optional>
 #include <set>
 #include <span>
+#include <system_error>
 #include <utility>
 
 namespace patchlight::cli {
 namespace {
 
-constexpr double work_plane = 0.8;        // metres above the floor
-constexpr double floor_tolerance = 0.01;  // metres
-constexpr double good_share = 0.5;        // of a floor's places, for it to have sensors
-constexpr std::size_t most_floors = 50;   // of groups that are tried, the largest
-constexpr double most_tried = 2e4;        // places over one floor: more are those of a model in another unit
-
-constexpr std::size_t most_cameras = 3;
-constexpr std::size_t most_viewed = 12;  // rooms in which a view is looked for
-constexpr double eye_height = 1.6;       // metres
-constexpr double target_height = 1.3;    // metres
-constexpr double field_of_view = 70;     // degrees
+constexpr double work_plane = 0.8;  // meters above the floor
+constexpr double eye_height = 1.6;  // meters
+constexpr double bad = -1;          // in the place of a height
 
 // With a ground under it, four times as wide, for models of rooms without slabs.
 Scene over_ground(Scene scene) {
@@ -49,8 +49,6 @@ Scene over_ground(Scene scene) {
   return scene;
 }
 
-constexpr double bad = -1;
-
 // A scene in which places are tried.
 class Trial {
  public:
@@ -65,7 +63,7 @@ class Trial {
 
   const Scene& scene() const { return scene_; }
 
-  // Per place, group after group, the height over the first face below, metres; or `bad`.
+  // Per place, group after group, the height over the first face below, meters; or `bad`.
   std::vector<double> heights(const std::vector<SensorGroup>& groups) const {
     Scene scene = scene_;
     scene.sensors = groups;
@@ -113,14 +111,15 @@ class Trial {
   std::vector<PolygonIndex> openings_;
 };
 
-// A grid that was tried: so many places are good, and so many of these have the floor itself below them.
+// A grid that was tried: so many places are good, and so many of these have the floor itself below them. Half of the
+// places are enough.
 struct TriedGrid {
   std::size_t places = 0;
   std::size_t good = 0;
   std::size_t over_floor = 0;
 
   bool has_enough(std::size_t count) const {
-    return count > 0 && static_cast<double>(count) >= good_share * static_cast<double>(places);
+    return count > 0 && static_cast<double>(count) >= 0.5 * static_cast<double>(places);
   }
 };
 
@@ -132,7 +131,7 @@ std::vector<TriedGrid> tried(const Trial& trial, const std::vector<SensorGroup>&
     TriedGrid grid{group.sensors.size()};
     for (std::size_t k = 0; k < group.sensors.size(); ++k, ++height) {
       grid.good += *height != bad;
-      grid.over_floor += std::abs(*height - work_plane) <= floor_tolerance;
+      grid.over_floor += std::abs(*height - work_plane) <= 0.01;
     }
     all.push_back(grid);
   }
@@ -153,9 +152,9 @@ FloorGrid standard_work_plane() {
   return grid;
 }
 
-// Nothing over floors of kilometres.
+// Nothing over a floor with more than 20,000 places, as in a model whose unit is wrong.
 SensorGroup grid_to_try(const Floor& floor, const FloorGrid& grid, const std::vector<Solid>& solids) {
-  const bool is_sensible = !floor.outlines.empty() && most_cells(floor, standard_grid(floor)) <= most_tried;
+  const bool is_sensible = !floor.outlines.empty() && most_cells(floor, standard_grid(floor)) <= 2e4;
   return is_sensible ? grid_over(floor, grid, solids).group : SensorGroup();
 }
 
@@ -189,13 +188,13 @@ NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
   return places;
 }
 
-// The floor of a group that has most area below closed rooms.
+// The floor of a group that has most area below closed rooms, of the 50 largest.
 NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> floors, LeftOut& notes) {
   FloorGrid grid = standard_work_plane();
   grid.from_walls = 0.5;
   const std::vector<Solid> solids = dark_solids(trial.scene());
   std::vector<SensorGroup> groups;
-  for (const NamedFloor& floor : floors.first(std::min(floors.size(), most_floors)))
+  for (const NamedFloor& floor : floors.first(std::min<std::size_t>(floors.size(), 50)))
     groups.push_back(grid_to_try(floor.floor, grid, solids));
   const std::vector<TriedGrid> grids = tried(trial, groups);
   NewPlaces places;
@@ -218,8 +217,7 @@ NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> flo
 std::vector<Point> eyes_in(const Trial& trial, const NamedFloor& place) {
   const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
   const GridSize size{spacing, standard_grid(place.floor).from_walls};
-  constexpr double most_places = 5000;
-  if (!(most_cells(place.floor, size) <= most_places)) return {};
+  if (!(most_cells(place.floor, size) <= 5000)) return {};
   const SensorGroup grid = floor_grid(place.floor, eye_height, size);
   const std::vector<double> heights = trial.heights({grid});
   std::vector<Point> eyes;
@@ -249,23 +247,23 @@ std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
   const auto rounded_length = [](const Way& way) { return std::llround(1e6 * way.length); };
   std::stable_sort(ways.begin(), ways.end(),
                    [&](const Way& a, const Way& b) { return rounded_length(a) > rounded_length(b); });
-  const Vector lower = (eye_height - target_height) * place.floor.up;
+  const Vector lower = (eye_height - 1.3) * place.floor.up;  // the target lies 1.3 m above the floor
   for (const Way& way : ways) {
-    const Camera camera{eyes[way.from], eyes[way.to] - lower, field_of_view, place.name};
+    const Camera camera{eyes[way.from], eyes[way.to] - lower, 70, place.name};
     if (trial.is_in_sight(camera.eye, camera.target)) return camera;
   }
   return std::nullopt;
 }
 
-// In the rooms with the largest windows first and, of equal ones, as in dark rooms, in the order given.
+// Three, in the twelve rooms with the largest windows first and, of equal ones, as in dark rooms, in the order given.
 std::vector<Camera> cameras_in(const Trial& trial, std::vector<NamedFloor> floors) {
   std::stable_sort(floors.begin(), floors.end(),
                    [](const NamedFloor& a, const NamedFloor& b) { return a.window_area > b.window_area; });
-  if (floors.size() > most_viewed) floors.resize(most_viewed);
+  if (floors.size() > 12) floors.resize(12);
   std::vector<Camera> cameras;
   std::set<std::string> names;
   for (const NamedFloor& place : floors) {
-    if (cameras.size() == most_cameras || names.count(place.name) > 0) continue;
+    if (cameras.size() == 3 || names.count(place.name) > 0) continue;
     std::optional<Camera> camera = camera_in(trial, place);
     if (!camera) continue;
     names.insert(place.name);
@@ -293,6 +291,26 @@ TriedPlaces new_places(const Scene& lit) {
   }
   tried.notes = notes.on({}).diagnostics;
   return tried;
+}
+
+ExitCode init(const InitArguments& arguments) {
+  std::error_code error;
+  if (std::filesystem::exists(arguments.output, error))
+    throw OutputError(arguments.output.string(), "already exists\nhint: choose another name, or delete it");
+  check_writable(arguments.output);
+  const Scene scene = read_scene(arguments.models, arguments.read);
+  for (const Diagnostic& problem : problems_with_size(scene)) print_diagnostic("note", problem);
+  const NewLight light = new_light(scene);
+  const TriedPlaces tried = new_places(with_new_light(scene, light));
+  for (const Diagnostic& note : tried.notes) print_diagnostic("note", note);
+  const std::string text =
+      new_scene_file(scene, light, tried.places, arguments.models, arguments.read.metres_per_unit, arguments.output);
+  const WritingGuard guard;
+  write_bytes(arguments.output, text);
+  std::cout << "wrote " << arguments.output.string() << "; next: patchlight solve " << arguments.output.string()
+            << " -o result.vtp --json result.json --picture result.png\n"
+            << std::flush;
+  return good;
 }
 
 }  // namespace patchlight::cli

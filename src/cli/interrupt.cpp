@@ -1,6 +1,5 @@
-#include "cli/interrupt.h"
-
-#include "cli/exit_code.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
 
 #include <atomic>
 #include <csignal>

@@ -1,13 +1,9 @@
 // Options of the commands that light a model: check, init, solve, render, plan, relight.
 #include "base/near_match.h"
-#include "cli/add_option.h"
-#include "cli/command_options.h"
 #include "cli/distinct_files.h"
-#include "cli/model_options.h"
 #include "cli/option_names.h"
+#include "cli/options.h"
 #include "cli/output_options.h"
-#include "cli/parse_value.h"
-#include "cli/run_options.h"
 #include "plan/check_request.h"
 
 #include <algorithm>
@@ -23,57 +19,43 @@ namespace {
 
 using std::filesystem::path;
 
-constexpr int most_models = 1'000'000;
-
 struct CheckOptions {
   ModelOptions model;
-  std::optional<Sides> sides;
-  std::string problems, json;
   PictureGiven picture;
-  std::optional<double> ambient_distance;
-  bool wants_json = false;
-  bool all = false;
+  CheckArguments arguments;
 };
 
 void add_json_of_check(CLI::App& command, CheckOptions& to) {
   option_text("check", "--json");
   const auto take = [&to](const std::vector<std::string>& values) {
     // In "check --json room.obj" the word after --json is the model.
-    to.wants_json = true;
+    to.arguments.json_on_stdout = true;
     for (const std::string& value : values) {
       if (path(value).extension() == ".json") {
-        to.json = value;
+        to.arguments.json = value;
       } else if (!value.empty()) {
         to.model.models.push_back(value);
       }
     }
   };
-  command.add_option_function<std::vector<std::string>>("--json", take)->expected(0, most_models);
+  command.add_option_function<std::vector<std::string>>("--json", take)->expected(0, 1'000'000);
 }
 
 CheckArguments finish_check(const CheckOptions& options) {
-  CheckArguments arguments;
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
-  arguments.sides = options.sides;
-  arguments.all = options.all;
-  arguments.json = options.json;
-  arguments.json_on_stdout = options.wants_json && arguments.json.empty();
-  arguments.problems = options.problems;
+  CheckArguments arguments = options.arguments;
+  take_model(options.model, arguments);
+  arguments.json_on_stdout = arguments.json_on_stdout && arguments.json.empty();
   if (arguments.models.empty()) throw UsageError("check: no model given\nhint: patchlight check MODEL");
-  if (!options.problems.empty() && path(options.problems).extension() != ".vtp")
-    throw refusal("--problems", options.problems, "a name that ends in .vtp");
+  if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp")
+    throw refusal("--problems", arguments.problems.string(), "a name that ends in .vtp");
   const std::string& picture = options.picture.file;
   if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".hdr"))
     throw refusal("--picture", picture, "a name that ends in .png or .hdr");
   arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
   if (arguments.picture.views.size() > 1) throw UsageError("--view: check --picture takes one view only");
-  arguments.ambient_distance = options.ambient_distance;
-  if (options.ambient_distance && picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
-  const std::vector<OutputFile> outputs = {
-      {"--json", arguments.json}, {"--problems", arguments.problems}, {"--picture", arguments.picture.file}};
-  require_distinct(outputs);
-  require_not_read(outputs, arguments.models);
+  if (arguments.ambient_distance && picture.empty()) throw UsageError("--ambient-occlusion needs --picture FILE");
+  require_distinct(outputs_of(arguments));
+  require_not_read(outputs_of(arguments), arguments.models);
   return arguments;
 }
 
@@ -87,8 +69,7 @@ InitArguments finish_init(const InitOptions& options) {
     throw UsageError(std::string("init: no ") + (options.model.models.empty() ? "model" : "-o SCENE.toml") +
                      " given\nhint: patchlight init MODEL -o SCENE.toml");
   InitArguments arguments;
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
+  take_model(options.model, arguments);
   arguments.output = options.output;
   for (const path& model : arguments.models) {
     if (model == "-" || model.extension() == ".toml")
@@ -98,19 +79,12 @@ InitArguments finish_init(const InitOptions& options) {
   return arguments;
 }
 
-struct SolveOptions {
+struct SolveOptions : SolutionOptions {
   ModelOptions model;
-  RequestGiven request;
-  SolutionOptions solution;
-  std::string form_factors;
-  std::string checkpoint;
 };
 
-void add_stored_form_factors(CLI::App& command, SolveOptions& to) {
-  add(command, "--form-factors", [&to](const std::string& text) {
-    if (text.empty()) throw refusal("--form-factors", text, "the name of a folder");
-    to.form_factors = text;
-  });
+void add_stored_form_factors(CLI::App& command, SolveArguments& to) {
+  add_name(command, "--form-factors", to.form_factors, "the name of a folder");
   add(command, "--checkpoint", [&to](const std::string& text) {
     if (text.empty()) throw refusal("--checkpoint", text, "the name of a folder");
     to.checkpoint = text;
@@ -128,61 +102,39 @@ void require_checkpoint_of_rays(const SolveArguments& arguments) {
                                        "\nhint: --method rays"));
 }
 
-SolveArguments finish_solve(const SolveOptions& options) {
+SolveArguments finish_solve(SolveOptions& options) {
   if (options.model.models.empty())
     throw UsageError("solve: no model given\nhint: patchlight solve MODEL -o RESULT.vtp");
-  SolveArguments arguments;
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
-  arguments.form_factors = options.form_factors;
-  arguments.checkpoint = options.checkpoint;
-  arguments = with_solution(std::move(arguments), "solve", options.solution);
-  const bool in_series = !options.solution.series.empty();
+  take_model(options.model, options.arguments);
+  SolveArguments arguments = with_solution(options, "solve");
+  const bool in_series = !arguments.series.empty();
   Storage& storage = arguments.request.assembly.storage;
   if (in_series && storage == Storage::automatic) storage = Storage::tiles;
-  arguments.request = with_fitting_solver(std::move(arguments.request), options.solution.solver_given || in_series);
+  arguments.request = with_fitting_solver(std::move(arguments.request), arguments.solver_given || in_series);
   require_checkpoint_of_rays(arguments);
   check(arguments.request, {.form_factors = !arguments.form_factors.empty()});
   return arguments;
 }
 
-struct RelightOptions {
-  std::string folder;
-  std::vector<std::string> settings;
-  std::optional<Vector> up;
-  DaylightSetting daylight;
-  Request request;
-  SolutionOptions solution;
-};
-
-SolveArguments finish_relight(const RelightOptions& options) {
-  if (options.folder.empty())
+SolveArguments finish_relight(SolveOptions& options) {
+  if (options.arguments.form_factors.empty())
     throw UsageError("relight: no folder given\nhint: patchlight relight FOLDER -o RESULT.vtp");
-  SolveArguments arguments;
-  arguments.form_factors = options.folder;
-  arguments.read.settings = material_settings(options.settings);
-  arguments.read.up = options.up;
-  arguments.read.daylight = options.daylight;
-  arguments.request = options.request;
-  arguments = with_solution(std::move(arguments), "relight", options.solution);
+  take_model(options.model, options.arguments);
+  SolveArguments arguments = with_solution(options, "relight");
   check(arguments.request, {.form_factors = true});
   return arguments;
 }
 
 struct PlanOptions {
   ModelOptions model;
-  RequestGiven request;
-  std::string json;
+  PlanArguments arguments;
 };
 
 PlanArguments finish_plan(const PlanOptions& options) {
   if (options.model.models.empty()) throw UsageError("plan: no model given\nhint: patchlight plan MODEL");
-  PlanArguments arguments;
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
-  arguments.request = with_fitting_solver(in_metres(options.request, options.model.metres_per_unit.value_or(1)), false);
-  arguments.json = options.json;
+  PlanArguments arguments = options.arguments;
+  take_model(options.model, arguments);
+  arguments.request = with_fitting_solver(std::move(arguments.request), false);
   check(arguments.request);
   require_not_read({{"--json", arguments.json}}, arguments.models);
   return arguments;
@@ -191,18 +143,16 @@ PlanArguments finish_plan(const PlanOptions& options) {
 struct RenderOptionsGiven {
   ModelOptions model;
   PictureGiven picture;
-  LightmapGiven lightmap;
-  std::string solution, observers, difference, page;
-  int threads = 0;
-  bool quiet = false;
+  RenderArguments arguments;
 };
 
-void require_solution(const std::string& option, const std::string& text) {
+std::string solution_named(const std::string& option, const std::string& text) {
   if (text.ends_with(".vtu"))
     throw UsageError(option + ": '" + text +
                      "' is a grid (.vtu), which lacks facts that images need\n"
                      "hint: solve with -o RESULT.vtp and give that file");
   if (!text.ends_with(".vtp")) throw refusal(option, text, "a name that ends in .vtp");
+  return text;
 }
 
 // The refusal without a solution, which may stand in the place of the model.
@@ -215,52 +165,38 @@ std::string without_solution(const std::vector<std::string>& models) {
 }
 
 void add_render_options(CLI::App& command, RenderOptionsGiven& to) {
-  add(command, "--solution", [&to](const std::string& text) {
-    require_solution("--solution", text);
-    to.solution = text;
-  });
-  add(command, "-o,--output", [&to](const std::string& text) {
-    if (text.empty()) throw refusal("-o", text, "the name of a file");
-    to.picture.file = text;
-  });
+  add(command, "--solution", to.arguments.solution, solution_named);
+  add_name(command, "-o,--output", to.picture.file, "the name of a file");
   add_picture_options(command, to.picture);
-  add(command, "--difference", [&to](const std::string& text) {
-    require_solution("--difference", text);
-    to.difference = text;
-  });
+  add(command, "--difference", to.arguments.difference, solution_named);
   add(command, "--observers", [&to](const std::string& text) {
     if (!text.ends_with(".csv")) throw refusal("--observers", text, "a name that ends in .csv");
-    to.observers = text;
+    to.arguments.observers = text;
   });
 }
 
 void require_consistent(const RenderOptionsGiven& options) {
+  const RenderArguments& asked = options.arguments;
+  const std::string& picture = options.picture.file;
   if (options.model.models.empty())
     throw UsageError("render: no model given\nhint: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
-  if (options.solution.empty()) throw UsageError("render: " + without_solution(options.model.models));
-  if (options.picture.file.empty() && options.observers.empty() && options.lightmap.folder.empty())
+  if (asked.solution.empty()) throw UsageError("render: " + without_solution(options.model.models));
+  if (picture.empty() && asked.observers.empty() && asked.lightmap.folder.empty())
     throw UsageError("render: nothing would be written\nhint: -o VIEW.png, --observers FILE.csv or --lightmap FOLDER");
-  if (options.picture.file.empty() && !options.page.empty())
+  if (picture.empty() && !asked.page.empty())
     throw UsageError("--html: the page shows the images of render, and there is none\nhint: -o VIEW.png");
-  if (!options.difference.empty() && (!options.picture.file.ends_with(".png") || options.picture.colors))
+  if (!asked.difference.empty() && (!picture.ends_with(".png") || options.picture.colors))
     throw UsageError("--difference is an image in natural colors\nhint: -o FILE.png, without --false-color");
 }
 
 RenderArguments finish_render(const RenderOptionsGiven& options) {
   require_consistent(options);
-  RenderArguments arguments;
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
-  arguments.solution = options.solution;
-  arguments.page = options.page;
-  arguments.observers = options.observers;
-  arguments.difference = options.difference;
-  arguments.lightmap = lightmap_settings(options.lightmap);
+  RenderArguments arguments = options.arguments;
+  take_model(options.model, arguments);
+  require_lightmap(arguments.lightmap);
   PictureGiven given = options.picture;
-  given.for_observers = !options.observers.empty();
+  given.for_observers = !arguments.observers.empty();
   arguments.picture = picture_settings(given, "-o", PictureQuality::final);
-  arguments.threads = options.threads;
-  arguments.quiet = options.quiet;
   std::vector<path> read = arguments.models;
   read.push_back(arguments.solution);
   if (!arguments.difference.empty()) read.push_back(arguments.difference);
@@ -281,14 +217,13 @@ Finish add_check(CLI::App& tool) {
   auto to = std::make_shared<CheckOptions>();
   CLI::App& command = *tool.add_subcommand("check");
   add_model_options(command, to->model);
-  add(command, "--sides", [&to = *to](const std::string& text) { to.sides = sides_named(text); });
-  add_flag(command, "--all", [&to = *to] { to.all = true; });
+  add_sides_option(command, to->arguments.sides);
+  add_flag(command, "--all", to->arguments.all);
   add_json_of_check(command, *to);
-  add(command, "--problems", [&to = *to](const std::string& text) { to.problems = text; });
+  add(command, "--problems", [&to = *to](const std::string& text) { to.arguments.problems = text; });
   add(command, "--picture", [&to = *to](const std::string& text) { to.picture.file = text; });
   add_view_options(command, to->picture);
-  add(command, "--ambient-occlusion",
-      [&to = *to](const std::string& text) { to.ambient_distance = length("--ambient-occlusion", text); });
+  add(command, "--ambient-occlusion", to->arguments.ambient_distance, length);
   return [to] { return finish_check(*to); };
 }
 
@@ -306,52 +241,53 @@ Finish add_init(CLI::App& tool) {
 Finish add_solve(CLI::App& tool) {
   auto to = std::make_shared<SolveOptions>();
   CLI::App& command = *tool.add_subcommand("solve");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_output_options(command, to->solution);
-  add_patch_options(command, to->request);
-  add_graded_option(command, to->request);
-  add_accuracy_options(command, to->request);
-  add_method_options(command, to->request);
-  add_stored_form_factors(command, *to);
-  add_effect_options(command, to->request, effects_but({}));
-  add_solver_options(command, to->solution, to->request);
-  add_sampling_options(command, to->request);
-  add_machine_options(command, to->request);
-  add_verbosity_options(command, to->solution);
+  add_sides_option(command, request.mesh.sides);
+  add_output_options(command, *to);
+  add_patch_options(command, to->model, request);
+  add_graded_option(command, request);
+  add_accuracy_options(command, request);
+  add_method_options(command, request);
+  add_stored_form_factors(command, to->arguments);
+  add_effect_options(command, request, effects_but({}));
+  add_solver_options(command, to->arguments);
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
+  add_verbosity_options(command, to->arguments);
   return [to] { return finish_solve(*to); };
 }
 
 Finish add_relight(CLI::App& tool) {
-  auto to = std::make_shared<RelightOptions>();
+  auto to = std::make_shared<SolveOptions>();
   CLI::App& command = *tool.add_subcommand("relight");
-  add(command, "FOLDER", [&to = *to](const std::string& text) { to.folder = text; });
-  add_set_option(command, to->settings);
-  add_up_option(command, to->up);
-  add_daylight_options(command, to->daylight);
-  add_effect_options(command, to->request,
+  Request& request = to->arguments.request;
+  add(command, "FOLDER", [&to = *to](const std::string& text) { to.arguments.form_factors = text; });
+  add_light_options(command, to->model);
+  add_effect_options(command, request,
                      effects_but({Effect::occlusion, Effect::reach, Effect::backs, Effect::textures}));
-  add_output_options(command, to->solution);
-  add_solver_options(command, to->solution, to->request);
-  add_machine_options(command, to->request);
-  add_verbosity_options(command, to->solution);
+  add_output_options(command, *to);
+  add_solver_options(command, to->arguments);
+  add_machine_options(command, request);
+  add_verbosity_options(command, to->arguments);
   return [to] { return finish_relight(*to); };
 }
 
 Finish add_plan(CLI::App& tool) {
   auto to = std::make_shared<PlanOptions>();
   CLI::App& command = *tool.add_subcommand("plan");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_json_option(command, to->json);
-  add_patch_options(command, to->request);
-  add_graded_option(command, to->request);
-  add_accuracy_options(command, to->request);
-  add_method_options(command, to->request);
-  add_closure_option(command, to->request);
-  add_effect_options(command, to->request, effects_but({}));
-  add_sampling_options(command, to->request);
-  add_machine_options(command, to->request);
+  add_sides_option(command, request.mesh.sides);
+  add_json_option(command, to->arguments.json);
+  add_patch_options(command, to->model, request);
+  add_graded_option(command, request);
+  add_accuracy_options(command, request);
+  add_method_options(command, request);
+  add_closure_option(command, request);
+  add_effect_options(command, request, effects_but({}));
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
   return [to] { return finish_plan(*to); };
 }
 
@@ -360,10 +296,10 @@ Finish add_render(CLI::App& tool) {
   CLI::App& command = *tool.add_subcommand("render");
   add_model_options(command, to->model);
   add_render_options(command, *to);
-  add_lightmap_options(command, to->lightmap);
-  add_page_option(command, to->page);
-  add_threads_option(command, to->threads);
-  add_quiet_option(command, to->quiet);
+  add_lightmap_options(command, to->arguments.lightmap);
+  add_page_option(command, to->arguments.page);
+  add_threads_option(command, to->arguments.threads);
+  add_quiet_option(command, to->arguments.quiet);
   return [to] { return finish_render(*to); };
 }
 

@@ -2,11 +2,9 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/former_names.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "cli/standard_streams.h"
+#include "cli/option_names.h"
+#include "cli/progress.h"
 
 #include <algorithm>
 #include <csignal>

@@ -4,9 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
-#include "cli/add_option.h"
-#include "cli/parse_value.h"
-#include "cli/run_options.h"
+#include "cli/options.h"
 #include "output/image/write_image.h"
 #include "output/image/write_lightmap.h"
 #include "output/vtk/write_points.h"
@@ -23,25 +21,11 @@ namespace {
 
 using std::filesystem::path;
 
-constexpr std::uint64_t most_pixels_per_edge = 32768;
-
-std::array<int, 2> size_of_picture(const std::string& text) {
+std::array<int, 2> size_of_picture(const std::string& option, const std::string& text) {
   const std::size_t cross = text.find('x');
-  if (cross == std::string::npos) throw refusal("--size", text, "width and height in pixels, e.g. 1600x900");
-  const auto edge = [](const std::string& part) {
-    return static_cast<int>(whole_number("--size", part, 1, most_pixels_per_edge));
-  };
+  if (cross == std::string::npos) throw refusal(option, text, "width and height in pixels, e.g. 1600x900");
+  const auto edge = [&](const std::string& part) { return static_cast<int>(whole_number(option, part, 1, 32768)); };
   return {edge(text.substr(0, cross)), edge(text.substr(cross + 1))};
-}
-
-Projection projection_asked(const std::string& text) {
-  using enum Projection;
-  return choice<Projection>("--projection", text,
-                            {{name_of(perspective), perspective},
-                             {name_of(orthographic), orthographic},
-                             {name_of(angular), angular},
-                             {name_of(hemispherical), hemispherical},
-                             {name_of(panorama), panorama}});
 }
 
 void add_camera_options(CLI::App& command, PictureGiven& given) {
@@ -52,7 +36,13 @@ void add_camera_options(CLI::App& command, PictureGiven& given) {
                           number("--camera (FOV)", values[2], degrees, [](double x) { return x > 0; })};
   };
   command.add_option_function<std::vector<std::string>>("--camera", take)->expected(3);
-  add(command, "--projection", [&given](const std::string& text) { given.projection = projection_asked(text); });
+  using enum Projection;
+  add_choice<Projection>(command, "--projection", given.projection,
+                         {{name_of(perspective), perspective},
+                          {name_of(orthographic), orthographic},
+                          {name_of(angular), angular},
+                          {name_of(hemispherical), hemispherical},
+                          {name_of(panorama), panorama}});
   add_list(command, "--view", given.views);
 }
 
@@ -96,11 +86,10 @@ std::filesystem::path with_view(const std::filesystem::path& file, const std::st
   return file.parent_path() / (file.stem().string() + '.' + name + file.extension().string());
 }
 
-// Adds an option that holds the name of a file.
-void add_file(CLI::App& command, const std::string& name, std::string& file) {
-  add(command, name, [&file, name](const std::string& text) {
-    if (text.empty()) throw refusal(name.substr(0, name.find(',')), text, "the name of a file");
-    file = text;
+void add_ending(CLI::App& command, const std::string& name, path& file, const std::string& ending) {
+  add(command, name, file, [ending](const std::string& option, const std::string& text) {
+    if (path(text).extension() != ending) throw refusal(option, text, "a name that ends in " + ending);
+    return text;
   });
 }
 
@@ -114,58 +103,51 @@ void require_extension(const std::string& option, const std::string& file, const
 }
 
 // Sensors may be asked for by --points, by a scene file among the models, or by that of which form factors are kept.
-bool may_have_sensors(const SolveArguments& arguments, const SolutionOptions& options) {
+bool may_have_sensors(const SolveArguments& arguments) {
   const auto is_scene_file = [](const path& model) {
     return model.extension() == ".toml" || model.extension() == ".hbjson";
   };
   const std::string& format = arguments.read.format;
-  return !options.points.empty() || arguments.models.empty() || format == "toml" || format == "hbjson" ||
+  return !arguments.points.empty() || arguments.models.empty() || format == "toml" || format == "hbjson" ||
          std::any_of(arguments.models.begin(), arguments.models.end(), is_scene_file);
 }
 
-std::vector<std::string> readings_extensions() {
-  std::vector<std::string> all = points_extensions();
-  all.insert(all.end(), {".svg", ".png"});
-  return all;
-}
-
-std::array<double, 2> range_of_map(const std::string& text) {
+std::array<double, 2> range_of_map(const std::string& option, const std::string& text) {
   const auto any = [](double) { return true; };
   const std::string expected = "two numbers, the lower first, e.g. 0,500";
   const std::size_t comma = text.find(',');
-  if (comma == std::string::npos) throw refusal("--map-range", text, expected);
-  const std::array<double, 2> range = {number("--map-range", text.substr(0, comma), expected, any),
-                                       number("--map-range", text.substr(comma + 1), expected, any)};
-  if (!(range[0] < range[1])) throw refusal("--map-range", text, expected);
+  if (comma == std::string::npos) throw refusal(option, text, expected);
+  const std::array<double, 2> range = {number(option, text.substr(0, comma), expected, any),
+                                       number(option, text.substr(comma + 1), expected, any)};
+  if (!(range[0] < range[1])) throw refusal(option, text, expected);
   return range;
 }
 
 bool is_map(const path& file) { return file.extension() == ".svg" || file.extension() == ".png"; }
 
 void require_consistent(const std::string& command, const SolutionOptions& options) {
-  if (options.results.empty() && options.series.empty() && options.picture.file.empty() && options.report.empty() &&
-      options.page.empty() && options.lightmap.folder.empty() && options.points.empty() &&
-      options.points_outputs.empty()) {
+  const SolveArguments& asked = options.arguments;
+  if (options.results.empty() && asked.series.empty() && options.picture.file.empty() && asked.report.empty() &&
+      asked.page.empty() && asked.lightmap.folder.empty() && asked.points.empty() && options.points_outputs.empty()) {
     throw UsageError(command +
                      ": nothing would be written; give at least one of -o, --html, --series, --picture, "
                      "--lightmap, --json, --points");
   }
-  if (options.quiet && options.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
+  if (asked.quiet && asked.verbose) throw UsageError("--quiet and -v exclude each other; give one of them");
   for (const std::string& result : options.results) require_extension("-o", result, result_extensions());
-  for (const std::string& file : options.points_outputs)
-    require_extension("--points-output", file, readings_extensions());
-  if (!options.series.empty()) require_extension("--series", options.series, {".pvd"});
+  std::vector<std::string> of_readings = points_extensions();
+  of_readings.insert(of_readings.end(), {".svg", ".png"});
+  for (const std::string& file : options.points_outputs) require_extension("--points-output", file, of_readings);
+  if (!asked.series.empty()) require_extension("--series", asked.series.string(), {".pvd"});
 }
 
-// A folder of form factors holds nothing else, so that it may be replaced as a whole.
-void require_untouched_folder(const SolveArguments& arguments) {
-  if (arguments.form_factors.empty()) return;
+// A folder that is replaced as a whole holds no other file. It need not be there yet.
+void require_outside(const path& folder, const std::string& name, const std::vector<OutputFile>& outputs) {
   std::error_code error;
-  const path folder = weakly_canonical(arguments.form_factors / ".", error);
-  for (const auto& [option, file] : outputs_of(arguments)) {
-    if (error || file.empty() || weakly_canonical(absolute(file), error).parent_path() != folder) continue;
-    throw UsageError(option + ": '" + file.string() +
-                     "' lies in the folder of form factors; expected a file elsewhere");
+  const path place = weakly_canonical(absolute(folder) / ".", error);
+  for (const auto& [option, file] : outputs) {
+    if (error || file.empty() || weakly_canonical(absolute(file), error).parent_path() / "." != place / ".") continue;
+    throw UsageError(option + ": '" + file.string() + "' lies in " + name + "; expected a file elsewhere");
   }
 }
 
@@ -180,15 +162,15 @@ path default_points_output(const SolveArguments& arguments) {
 }
 
 void add_points_options(CLI::App& command, SolutionOptions& options) {
-  add_file(command, "--points", options.points);
+  add_name(command, "--points", options.arguments.points, "the name of a file");
   add_list(command, "--points-output", options.points_outputs);
   add(command, "--map", [&options](const std::string& text) {
-    options.map.quantity = choice<MapQuantity>(
+    options.arguments.map.quantity = choice<MapQuantity>(
         "--map", text, {{"illuminance", MapQuantity::illuminance}, {"daylight-factor", MapQuantity::daylight_factor}});
     options.map_given = "--map";
   });
   add(command, "--map-range", [&options](const std::string& text) {
-    options.map.range = range_of_map(text);
+    options.arguments.map.range = range_of_map("--map-range", text);
     options.map_given = "--map-range";
   });
 }
@@ -197,26 +179,21 @@ void add_points_options(CLI::App& command, SolutionOptions& options) {
 
 void add_view_options(CLI::App& command, PictureGiven& given) {
   add_camera_options(command, given);
-  add(command, "--size", [&given](const std::string& text) { given.size = size_of_picture(text); });
+  add(command, "--size", given.size, size_of_picture);
 }
 
 void add_picture_options(CLI::App& command, PictureGiven& given) {
-  add(command, "--false-color", [&given](const std::string& text) {
-    given.colors = choice<PictureColors>("--false-color", text, {{"luminance", PictureColors::luminance}});
-  });
+  add_choice<PictureColors>(command, "--false-color", given.colors, {{"luminance", PictureColors::luminance}});
   add_view_options(command, given);
-  add(command, "--picture-quality", [&given](const std::string& text) {
-    given.quality = choice<PictureQuality>("--picture-quality", text,
-                                           {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
-  });
-  add(command, "--picture-error",
-      [&given](const std::string& text) { given.error = relative_error("--picture-error", text); });
+  add_choice<PictureQuality>(command, "--picture-quality", given.quality,
+                             {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
+  add(command, "--picture-error", given.error, relative_error);
   add(command, "--picture-samples", [&given](const std::string& text) {
     const std::uint64_t samples = whole_number("--picture-samples", text, least_picture_samples, most_picture_samples);
     if (!std::has_single_bit(samples)) throw refusal("--picture-samples", text, "a power of two, e.g. 128 or 256");
     given.most_samples = static_cast<int>(samples);
   });
-  add_file(command, "--picture-error-map", given.error_map);
+  add_name(command, "--picture-error-map", given.error_map, "the name of a file");
 }
 
 PictureSettings picture_settings(const PictureGiven& given, const std::string& file_option, PictureQuality usual) {
@@ -271,27 +248,17 @@ std::vector<OutputFile> picture_files(const PictureSettings& settings, const std
   return files;
 }
 
-void add_lightmap_options(CLI::App& command, LightmapGiven& given) {
-  add(command, "--lightmap", [&given](const std::string& text) {
-    if (text.empty()) throw refusal("--lightmap", text, "the name of a folder");
-    given.folder = text;
-  });
-  add(command, "--texel", [&given](const std::string& text) { given.texel = length("--texel", text); });
+void add_lightmap_options(CLI::App& command, LightmapSettings& settings) {
+  add_name(command, "--lightmap", settings.folder, "the name of a folder");
+  add(command, "--texel", settings.options.texel, length);
 }
 
-LightmapSettings lightmap_settings(const LightmapGiven& given) {
-  if (given.texel && given.folder.empty()) throw UsageError("--texel needs --lightmap FOLDER");
-  return {given.folder, {given.texel}};
+void require_lightmap(const LightmapSettings& settings) {
+  if (settings.options.texel && settings.folder.empty()) throw UsageError("--texel needs --lightmap FOLDER");
 }
 
 void require_outside_lightmap(const LightmapSettings& settings, const std::vector<OutputFile>& outputs) {
-  if (settings.folder.empty()) return;
-  std::error_code error;
-  const auto folder = weakly_canonical(absolute(settings.folder) / ".", error);
-  for (const auto& [option, file] : outputs) {
-    if (error || file.empty() || weakly_canonical(absolute(file), error).parent_path() / "." != folder / ".") continue;
-    throw UsageError(option + ": '" + file.string() + "' lies in the folder of --lightmap; expected a file elsewhere");
-  }
+  if (!settings.folder.empty()) require_outside(settings.folder, "the folder of --lightmap", outputs);
 }
 
 std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings) {
@@ -302,102 +269,77 @@ std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings)
          rounded(static_cast<double>(bytes_of(map)) / 1e6) + " MB of memory\n";
 }
 
-void add_json_option(CLI::App& command, std::string& json) {
-  add(command, "--json", [&json](const std::string& text) {
-    if (path(text).extension() != ".json") throw refusal("--json", text, "a name that ends in .json");
-    json = text;
-  });
-}
+void add_json_option(CLI::App& command, path& json) { add_ending(command, "--json", json, ".json"); }
 
-void add_page_option(CLI::App& command, std::string& page) {
-  add(command, "--html", [&page](const std::string& text) {
-    if (path(text).extension() != ".html") throw refusal("--html", text, "a name that ends in .html");
-    page = text;
-  });
-}
+void add_page_option(CLI::App& command, path& page) { add_ending(command, "--html", page, ".html"); }
 
-void require_page_elsewhere(const std::filesystem::path& page, const std::filesystem::path& folder) {
-  if (page.empty()) return;
-  const auto folder_of = [](const std::filesystem::path& file) {
-    std::error_code error;
-    return weakly_canonical(absolute(file), error).parent_path();
-  };
-  // The folder need not be there yet.
-  if (folder_of(page) != folder_of(folder / "file")) return;
-  throw UsageError("--html: '" + page.string() + "' lies in the folder of -o; expected a file elsewhere");
+void require_page_elsewhere(const path& page, const path& folder) {
+  require_outside(folder, "the folder of -o", {{"--html", page}});
 }
 
 void add_output_options(CLI::App& command, SolutionOptions& options) {
+  SolveArguments& to = options.arguments;
   add_list(command, "-o,--output", options.results);
-  add(command, "--ambient-occlusion",
-      [&options](const std::string& text) { options.ambient_distance = length("--ambient-occlusion", text); });
-  add_page_option(command, options.page);
-  add_file(command, "--series", options.series);
-  add_file(command, "--json", options.report);
-  add_file(command, "--picture", options.picture.file);
+  add(command, "--ambient-occlusion", to.ambient_distance, length);
+  add_page_option(command, to.page);
+  add_name(command, "--series", to.series, "the name of a file");
+  add_name(command, "--json", to.report, "the name of a file");
+  add_name(command, "--picture", options.picture.file, "the name of a file");
   add_picture_options(command, options.picture);
-  add_lightmap_options(command, options.lightmap);
+  add_lightmap_options(command, to.lightmap);
   add_points_options(command, options);
 }
 
-void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request) {
-  add_closure_option(command, request);
-  add_relaxation_option(command, request.solver.relaxation);
-  add(command, "--solver", [&request, &options](const std::string& text) {
-    options.solver_given = true;
-    request.solver.solver = solver_named("--solver", text);
+void add_solver_options(CLI::App& command, SolveArguments& arguments) {
+  SolverOptions& solver = arguments.request.solver;
+  add_closure_option(command, arguments.request);
+  add_relaxation_option(command, solver.relaxation);
+  add(command, "--solver", [&arguments](const std::string& text) {
+    arguments.solver_given = true;
+    arguments.request.solver.solver = solver_named("--solver", text);
   });
-  add_tolerance_option(command, 0, [&request](double error) { request.solver.relative_error = error; });
-  add(command, "--max-iterations", [&request](const std::string& text) {
-    request.solver.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 0, 1'000'000'000));
-  });
-  add(command, "--max-rows",
-      [&request](const std::string& text) { request.solver.max_rows = share("--max-rows", text); });
+  add_tolerance_option(command, 0, solver.relative_error);
+  add_whole(command, "--max-iterations", solver.max_iterations, 0, 1'000'000'000);
+  add(command, "--max-rows", solver.max_rows, share);
 }
 
-void add_verbosity_options(CLI::App& command, SolutionOptions& options) {
-  add_flag(command, "--discard", [&options] { options.discards = true; });
-  add_quiet_option(command, options.quiet);
-  add_flag(command, "-v,--verbose", [&options] { options.verbose = true; });
+void add_verbosity_options(CLI::App& command, SolveArguments& arguments) {
+  add_flag(command, "--discard", arguments.discards);
+  add_quiet_option(command, arguments.quiet);
+  add_flag(command, "-v,--verbose", arguments.verbose);
 }
 
-SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options) {
+SolveArguments with_solution(const SolutionOptions& options, const std::string& command) {
   require_consistent(command, options);
-  if (!options.series.empty() && !options.solver_given) arguments.request.solver.solver = Solver::jacobi;
+  SolveArguments arguments = options.arguments;
+  if (!arguments.series.empty() && !arguments.solver_given) arguments.request.solver.solver = Solver::jacobi;
   arguments.results.assign(options.results.begin(), options.results.end());
-  arguments.series = options.series;
-  arguments.report = options.report;
-  arguments.page = options.page;
   arguments.picture = picture_settings(options.picture, "--picture", PictureQuality::draft);
-  arguments.lightmap = lightmap_settings(options.lightmap);
+  require_lightmap(arguments.lightmap);
   if (arguments.picture.views.size() > 1)
     throw UsageError("--view: found several; expected one, as patchlight render takes pictures of more");
-  arguments.points = options.points;
   arguments.points_outputs.assign(options.points_outputs.begin(), options.points_outputs.end());
-  if (!options.points.empty() && arguments.points_outputs.empty()) {
-    arguments.points_outputs = {default_points_output(arguments)};
-  }
   arguments.default_points_output = default_points_output(arguments);
-  if (!arguments.points_outputs.empty() && !may_have_sensors(arguments, options)) {
+  if (!arguments.points.empty() && arguments.points_outputs.empty())
+    arguments.points_outputs = {arguments.default_points_output};
+  if (!arguments.points_outputs.empty() && !may_have_sensors(arguments))
     throw UsageError("--points-output needs --points FILE, or a scene file with sensors");
-  }
   const auto is_vtk = [](const path& result) { return result.extension() == ".vtp" || result.extension() == ".vtu"; };
-  if (options.ambient_distance && std::none_of(arguments.results.begin(), arguments.results.end(), is_vtk))
+  if (arguments.ambient_distance && std::none_of(arguments.results.begin(), arguments.results.end(), is_vtk))
     throw UsageError("--ambient-occlusion is written into results for ParaView; expected -o RESULT.vtp");
-  arguments.ambient_distance = options.ambient_distance;
-  arguments.map = options.map;
   if (!options.map_given.empty() &&
       std::none_of(arguments.points_outputs.begin(), arguments.points_outputs.end(), is_map))
     throw UsageError(options.map_given + " is of maps of sensors; expected --points-output FILE.svg or FILE.png");
-  arguments.discards = options.discards;
-  arguments.solver_given = options.solver_given;
-  if (options.quiet) arguments.verbosity = Verbosity::quiet;
-  if (options.verbose) arguments.verbosity = Verbosity::verbose;
   require_distinct(outputs_of(arguments));
   require_outside_lightmap(arguments.lightmap, outputs_of(arguments));
   require_not_read(outputs_of(arguments), given_files(arguments));
-  require_untouched_folder(arguments);
+  if (std::error_code error; is_directory(arguments.form_factors, error))
+    require_outside(arguments.form_factors, "the folder of form factors", outputs_of(arguments));
   return arguments;
+}
+
+std::vector<OutputFile> outputs_of(const CheckArguments& arguments) {
+  return {{"--json", arguments.json}, {"--problems", arguments.problems}, {"--picture", arguments.picture.file}};
 }
 
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments) {

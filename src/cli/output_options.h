@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// The options that name results. The values land in a structure, which must outlive the command.
+// The options that name results. The values land in structures that must outlive the command.
 namespace patchlight::cli {
 
 /// The smallest and the largest value of --picture-samples.
@@ -48,17 +48,11 @@ std::vector<PictureSettings> single_pictures(const PictureSettings& settings);
 /// The files of pictures, with the options that ask for them.
 std::vector<OutputFile> picture_files(const PictureSettings& settings, const std::string& file_option);
 
-/// The options of a lightmap while they are being parsed.
-struct LightmapGiven {
-  std::string folder;
-  std::optional<double> texel;  ///< metres
-};
+/// Adds --lightmap and --texel.
+void add_lightmap_options(CLI::App& command, LightmapSettings& settings);
 
-/// Adds --lightmap and --texel. The values land in `given`, which must outlive the command.
-void add_lightmap_options(CLI::App& command, LightmapGiven& given);
-
-/// The lightmap that they request. \throws UsageError for texels of no lightmap.
-LightmapSettings lightmap_settings(const LightmapGiven& given);
+/// \throws UsageError for texels of no lightmap.
+void require_lightmap(const LightmapSettings& settings);
 
 /// \throws UsageError when an output lies in the folder of the lightmap, which is replaced as a whole.
 void require_outside_lightmap(const LightmapSettings& settings, const std::vector<OutputFile>& outputs);
@@ -67,44 +61,37 @@ void require_outside_lightmap(const LightmapSettings& settings, const std::vecto
 std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings);
 
 /// Adds --json with one file (.json).
-void add_json_option(CLI::App& command, std::string& json);
+void add_json_option(CLI::App& command, std::filesystem::path& json);
 
-/// Adds --html, which lands in `page`; it must outlive the command.
-void add_page_option(CLI::App& command, std::string& page);
+/// Adds --html with one file.
+void add_page_option(CLI::App& command, std::filesystem::path& page);
 
 /// \throws UsageError when the page would lie in the folder that the command replaces as a whole.
 void require_page_elsewhere(const std::filesystem::path& page, const std::filesystem::path& folder);
 
 /// The options of the solver and the outputs, while they are being parsed.
 struct SolutionOptions {
-  bool solver_given = false;
-  std::vector<std::string> results;
-  std::string series, report, page, points;
+  SolveArguments arguments;  ///< but for the results, the picture and the outputs of sensors
+  std::vector<std::string> results, points_outputs;
   PictureGiven picture;
-  LightmapGiven lightmap;
-  std::vector<std::string> points_outputs;
-  MapOptions map;
-  std::optional<double> ambient_distance;
-  std::string map_given;  // the option
-  bool discards = false;
-  bool quiet = false;
-  bool verbose = false;
+  std::string map_given;  ///< the option
 };
 
 /// Adds the options of all results, pictures and sensors.
 void add_output_options(CLI::App& command, SolutionOptions& options);
 
-/// Adds the options of closure and solver, which land in `request`.
-void add_solver_options(CLI::App& command, SolutionOptions& options, Request& request);
+/// Adds the options of closure and solver.
+void add_solver_options(CLI::App& command, SolveArguments& arguments);
 
 /// Adds --discard, -q and -v.
-void add_verbosity_options(CLI::App& command, SolutionOptions& options);
+void add_verbosity_options(CLI::App& command, SolveArguments& arguments);
 
-/// `arguments` with the results that these options ask for, once they hold the inputs and the request. `command`
-/// is the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
-SolveArguments with_solution(SolveArguments arguments, const std::string& command, const SolutionOptions& options);
+/// The arguments with the results that these options ask for, once they hold the inputs and the request. `command` is
+/// the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
+SolveArguments with_solution(const SolutionOptions& options, const std::string& command);
 
 /// The files that would be written, each with its option.
+std::vector<OutputFile> outputs_of(const CheckArguments& arguments);
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments);
 
 /// The files of the command line that are read.

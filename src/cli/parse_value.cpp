@@ -1,5 +1,7 @@
 #include "cli/parse_value.h"
 
+#include "base/rounded.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,8 +11,12 @@
 namespace patchlight::cli {
 namespace {
 
-// What a unit is called, and how much it is.
+// The name of a unit, and its size.
 using Unit = std::pair<const char*, double>;
+
+// A number alone is in meters.
+constexpr std::array<Unit, 6> units_of_length = {
+    {{"", 1}, {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
 // A number above 0 times the unit that follows it; nothing when there is no such unit.
 std::optional<double> quantity(const std::string& text, std::span<const Unit> units) {
@@ -87,9 +93,7 @@ double seconds(const std::string& option, const std::string& text) {
 }
 
 double length(const std::string& option, const std::string& text) {
-  constexpr std::array<Unit, 6> units = {
-      {{"", 1}, {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
-  if (const std::optional<double> value = quantity(text, units)) return *value;
+  if (const std::optional<double> value = quantity(text, units_of_length)) return *value;
   throw refusal(option, text, "a length above 0 such as 5cm or 0.05; units: m, cm, mm, in, ft");
 }
 
@@ -127,8 +131,14 @@ Point point(const std::string& option, const std::string& text) {
   return result;
 }
 
-double unit_length(const std::string& text) {
-  return choice<double>("--unit", text, {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}});
+std::vector<std::pair<std::string, double>> length_units() {
+  return {units_of_length.begin() + 1, units_of_length.end()};
+}
+
+double tolerance(const std::string& option, const std::string& text, double least) {
+  const std::string lower = least > 0 ? "from " + rounded(least) + " to" : "above 0 and";
+  return number(option, text, "a number " + lower + " below 1",
+                [least](double x) { return x > 0 && x >= least && x < 1; });
 }
 
 Solver solver_named(const std::string& option, const std::string& text) {

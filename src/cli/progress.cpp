@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "base/parallel.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 
 #include <cmath>
@@ -41,8 +40,8 @@ std::string ProgressLine::text_of(const Progress& progress, double now) {
     stage_ = progress.stage;
     stage_begin_ = now;
   }
-  std::string text = work_ + name_of(progress.stage);
-  text += ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
+  std::string text =
+      work_ + name_of(progress.stage) + ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
   // The time left follows from the time taken; too early it would only flicker.
   const double taken = now - stage_begin_;
   if (taken > 1 && progress.fraction > 0.02 && progress.fraction < 1) {
@@ -55,10 +54,9 @@ void ProgressLine::show(const Progress& progress, double now) {
   if (shown_ == ProgressShown::nothing) return;
   std::string text = text_of(progress, now);
   if (shown_ == ProgressShown::log) {
-    constexpr double interval = 10;
-    if (!next_line_) next_line_ = now + interval;
+    if (!next_line_) next_line_ = now + 10;
     if (now < *next_line_) return;
-    next_line_ = now + interval;
+    next_line_ = now + 10;
     std::cerr << "patchlight: " << text << std::endl;
     return;
   }

@@ -1,24 +1,31 @@
+#include "cli/render.h"
+
 #include "patchlight/base/error.h"
+#include "patchlight/output/write_image.h"
 #include "patchlight/views/views.h"
 
 #include "accuracy/spaces.h"
 #include "archive/read_solution.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
+#include "base/rounded.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/output_options.h"
-#include "cli/picture.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
 #include "page/write_page.h"
 #include "pipeline/world.h"
+#include "render/lens.h"
 #include "scene/extent.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -28,16 +35,6 @@
 
 namespace patchlight::cli {
 namespace {
-
-void require_cameras(const std::vector<PictureSettings>& pictures, const Scene& scene) {
-  const Reach reach = reach_of(scene);
-  for (const PictureSettings& picture : pictures) {
-    const std::optional<Camera> camera = camera_for(picture, scene);
-    if (!camera) continue;
-    require_in_reach(reach, camera->eye, "--camera", "the eye");
-    require_in_reach(reach, camera->target, "--camera", "the target");
-  }
-}
 
 // The cameras that are asked for, else all of the scene.
 std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, const Scene& scene) {
@@ -51,7 +48,7 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
-// With what is enclosed by day, which the file does not tell.
+// With the patches that are enclosed by day, which the file does not list.
 Simulation stored_solution(const std::filesystem::path& file, const std::shared_ptr<const Scene>& scene) {
   Simulation simulation = read_solution(file, scene);
   if (scene->sky || scene->sun)
@@ -71,7 +68,7 @@ void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene
   write_page(arguments.page, page);
 }
 
-// Returns what is said of it.
+// Returns the line about it.
 std::string write_lightmap_of(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                               const Observer& observer) {
   const Lightmap map = bake_lightmap(simulation, arguments.lightmap.options, observer);
@@ -82,6 +79,66 @@ std::string write_lightmap_of(const RenderArguments& arguments, const Scene& sce
 }
 
 }  // namespace
+
+std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene) {
+  if (settings.camera) {
+    Camera camera = *settings.camera;
+    camera.eye *= scene.metres_per_unit;
+    camera.target *= scene.metres_per_unit;
+    camera.height *= scene.metres_per_unit;
+    return camera;
+  }
+  std::string names;
+  for (const Camera& camera : scene.cameras) {
+    if (settings.views.empty() || camera.name == settings.views.front()) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  if (settings.views.empty()) return std::nullopt;
+  throw InputError("--view", "found '" + settings.views.front() + "'; expected a camera of the scene file: " +
+                                 (names.empty() ? "it has none" : "one of " + names));
+}
+
+void require_camera_in_reach(const PictureSettings& settings, const Scene& scene) {
+  const std::optional<Camera> camera = camera_for(settings, scene);
+  if (!camera) return;
+  const Reach reach = reach_of(scene);
+  require_in_reach(reach, camera->eye, "--camera", "the eye");
+  require_in_reach(reach, camera->target, "--camera", "the target");
+}
+
+Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
+                     const Observer& observer) {
+  return take_picture(simulation,
+                      {.camera = camera_for(settings, scene),
+                       .colors = settings.colors,
+                       .width = settings.size[0],
+                       .height = settings.size[1],
+                       .quality = settings.quality,
+                       .error = settings.error,
+                       .most_samples = settings.most_samples},
+                      observer);
+}
+
+std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture) {
+  if (picture.unfinished || !picture.reached_error || *picture.reached_error <= 1.1 * settings.error)
+    return std::nullopt;
+  const std::string reached = rounded(100 * *picture.reached_error, 2) + "%";
+  std::string text = settings.file.string() + ": the pixels' standard error is " + reached +
+                     " (root mean square), not the " + rounded(100 * settings.error, 2) +
+                     "% of --picture-error, with at most " + std::to_string(settings.most_samples) +
+                     " samples per pixel\nhint: ";
+  // Errors fall with the root of the samples' number at the slowest.
+  const double times = std::pow(*picture.reached_error / settings.error, 2);
+  const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
+  const auto samples = std::bit_ceil(static_cast<std::uint32_t>(wanted));
+  if (samples > static_cast<std::uint32_t>(settings.most_samples))
+    text += "--picture-samples " + std::to_string(samples) + ", or ";
+  return text + "a larger --picture-error";
+}
+
+void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene) {
+  write_picture(file, picture, picture_up(picture.camera, scene.up, scene.north), bands_of(scene));
+}
 
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse what cannot be written, or would be lost
@@ -101,7 +158,7 @@ ExitCode render(const RenderArguments& arguments) {
   const auto read = std::make_shared<const Scene>(read_models(arguments.models, arguments.read, observer));
   const Scene& scene = *read;
   check_limits(scene);
-  require_cameras(wanted, scene);
+  for (const PictureSettings& one : wanted) require_camera_in_reach(one, scene);
   const Simulation simulation = stored_solution(arguments.solution, read);
   std::optional<Simulation> other;
   if (!arguments.difference.empty()) other = stored_solution(arguments.difference, read);
@@ -133,7 +190,7 @@ ExitCode render(const RenderArguments& arguments) {
       write_picture_file(one.file, picture, scene);
     written.push_back(one.file);
     if (!one.error_map.empty()) {
-      write_error_map(one.error_map, picture);
+      write_picture_errors(one.error_map, picture);
       written.push_back(one.error_map);
     }
     if (const auto missed = missed_error(one, picture); missed && !arguments.quiet) missed_errors.push_back(*missed);

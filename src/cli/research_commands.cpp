@@ -1,13 +1,9 @@
 // Options of the commands that examine methods and results: crosscheck, form-factors, compare-solvers, convergence,
 // selftest.
-#include "cli/add_option.h"
-#include "cli/command_options.h"
 #include "cli/distinct_files.h"
-#include "cli/model_options.h"
 #include "cli/option_names.h"
+#include "cli/options.h"
 #include "cli/output_options.h"
-#include "cli/parse_value.h"
-#include "cli/run_options.h"
 #include "plan/check_request.h"
 
 #include <algorithm>
@@ -22,46 +18,29 @@
 namespace patchlight::cli {
 namespace {
 
-// So many sides that --sides auto leaves out are checked.
-constexpr std::size_t left_out_checked = 16;
-
 // Options that these commands share.
+template <typename Arguments>
 struct ResearchOptions {
   ModelOptions model;
-  RequestGiven request;
-  std::string output, page;
-  bool quiet = false;
+  Arguments arguments;
 };
 
-template <typename To>
-void take_common(const ResearchOptions& options, To& arguments) {
-  arguments.models = model_files(options.model);
-  arguments.read = read_options(options.model);
-  arguments.request = in_metres(options.request, options.model.metres_per_unit.value_or(1));
-  arguments.quiet = options.quiet;
-}
-
-void require_model(const ResearchOptions& options, const std::string& command, const std::string& output) {
+template <typename Options>
+void require_model(const Options& options, const std::string& command, const std::string& output) {
   if (options.model.models.empty())
     throw UsageError(command + ": no model given\nhint: patchlight " + command + " MODEL" + output);
 }
 
-void add_output_option(CLI::App& command, ResearchOptions& to) {
-  add(command, "-o,--output", [&to](const std::string& text) { to.output = text; });
+template <typename Arguments>
+void add_output_option(CLI::App& command, Arguments& arguments) {
+  add(command, "-o,--output", [&arguments](const std::string& text) { arguments.output = text; });
 }
 
-struct CrosscheckOptions : ResearchOptions {
-  VerifyOptions verify;
-  std::optional<double> bar;
-  std::string json;
-};
+using CrosscheckOptions = ResearchOptions<CrosscheckArguments>;
 
-void add_crosscheck_options(CLI::App& command, CrosscheckOptions& to) {
-  add(command, "--paths", [&to](const std::string& text) {
-    to.verify.paths = static_cast<std::uint32_t>(whole_number("--paths", text, 1, 1U << 22U));
-  });
-  add(command, "--sample-patches",
-      [&to](const std::string& text) { to.verify.checked = whole_number("--sample-patches", text, 1, 1'000'000'000); });
+void add_crosscheck_options(CLI::App& command, CrosscheckArguments& to) {
+  add_whole(command, "--paths", to.options.paths, 1, 1U << 22U);
+  add_whole(command, "--sample-patches", to.options.checked, 1, 1'000'000'000);
   add(command, "--margin", [&to](const std::string& text) {
     const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
     const auto inside = [](double x) { return x >= 0 && x <= 100; };
@@ -72,44 +51,38 @@ void add_crosscheck_options(CLI::App& command, CrosscheckOptions& to) {
 
 CrosscheckArguments finish_crosscheck(const CrosscheckOptions& options) {
   require_model(options, "crosscheck", "");
-  CrosscheckArguments arguments;
-  take_common(options, arguments);
-  arguments.options = options.verify;
+  CrosscheckArguments arguments = options.arguments;
+  take_model(options.model, arguments);
   arguments.options.seed = arguments.request.assembly.seed;
-  arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? left_out_checked : 0;
-  arguments.bar = options.bar;
-  arguments.options.relative_bar = options.bar;
-  arguments.request.accuracy.error_bars = !options.bar;
+  // So many of the sides that --sides auto leaves out are checked.
+  arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? 16 : 0;
+  arguments.options.relative_bar = arguments.bar;
+  arguments.request.accuracy.error_bars = !arguments.bar;
   Storage& storage = arguments.request.assembly.storage;
-  if (options.bar && storage == Storage::rays) {
+  if (arguments.bar && storage == Storage::rays) {
     throw UsageError(
         "--margin cannot be used with --method rays or --rays: it replaces all errors, but not the sampling error of "
         "rays");
   }
-  if (options.bar && storage == Storage::automatic) storage = Storage::tiles;
+  if (arguments.bar && storage == Storage::automatic) storage = Storage::tiles;
   arguments.request = with_fitting_solver(std::move(arguments.request), false);
   const OptionName error_bars{"accuracy.error_bars", "the error bars that crosscheck uses without --margin"};
   check_with_names(arguments.request, std::array{error_bars});
-  arguments.json = options.json;
   return arguments;
 }
 
-struct FormFactorOptions : ResearchOptions {
+struct FormFactorOptions : ResearchOptions<FormFactorArguments> {
   std::optional<MatrixFormat> format;
-  std::optional<GroupBy> by;
 };
 
 void add_form_factor_options(CLI::App& command, FormFactorOptions& to) {
-  add_output_option(command, to);
-  add(command, "--matrix", [&to](const std::string& text) {
-    to.format =
-        choice<MatrixFormat>("--matrix", text, {{"npy", MatrixFormat::npy}, {"mtx", MatrixFormat::matrix_market}});
-  });
-  add(command, "--by", [&to](const std::string& text) {
-    to.by = choice<GroupBy>("--by", text, {{"material", GroupBy::material}, {"object", GroupBy::object}});
-  });
+  add_output_option(command, to.arguments);
+  add_choice<MatrixFormat>(command, "--matrix", to.format,
+                           {{"npy", MatrixFormat::npy}, {"mtx", MatrixFormat::matrix_market}});
+  add_choice<GroupBy>(command, "--by", to.arguments.by, {{"material", GroupBy::material}, {"object", GroupBy::object}});
   option_text("form-factors", "--without");
-  const auto switch_off = [&short_cuts = to.request.assembly.short_cuts](const std::vector<std::string>& names) {
+  const auto switch_off = [&short_cuts =
+                               to.arguments.request.assembly.short_cuts](const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       short_cuts.*choice<bool ShortCuts::*>(
                       "--without", name,
@@ -119,14 +92,11 @@ void add_form_factor_options(CLI::App& command, FormFactorOptions& to) {
   command.add_option_function<std::vector<std::string>>("--without", switch_off)->allow_extra_args(false);
 }
 
-bool is_by_rays(const FormFactorOptions& options) { return options.request.assembly.storage == Storage::rays; }
-
 // A matrix and tables of groups are of all pairs.
 void require_pairs(const FormFactorOptions& options) {
-  if (!is_by_rays(options)) return;
-  const std::filesystem::path extension = std::filesystem::path(options.output).extension();
+  const std::filesystem::path extension = options.arguments.output.extension();
   const char* const wanted = options.format                               ? "--matrix"
-                             : options.by                                 ? "--by"
+                             : options.arguments.by                       ? "--by"
                              : extension == ".npy" || extension == ".mtx" ? "-o FILE"
                                                                           : nullptr;
   if (wanted != nullptr)
@@ -134,14 +104,15 @@ void require_pairs(const FormFactorOptions& options) {
 }
 
 FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
-  FormFactorArguments arguments;
-  take_common(options, arguments);
-  arguments.output = options.output;
+  FormFactorArguments arguments = options.arguments;
+  take_model(options.model, arguments);
   arguments.format = options.format.value_or(MatrixFormat::npy);
-  require_pairs(options);
-  if (is_by_rays(options)) arguments.request.solver.solver = Solver::gmres;
+  const bool is_by_rays = arguments.request.assembly.storage == Storage::rays;
+  if (is_by_rays) {
+    require_pairs(options);
+    arguments.request.solver.solver = Solver::gmres;
+  }
   check(arguments.request);
-  arguments.by = options.by;
   require_model(options, "form-factors", " -o FOLDER");
   if (arguments.output.empty())
     throw UsageError("form-factors: nothing would be written\nhint: -o FOLDER, or -o FILE.npy for the matrix alone");
@@ -149,9 +120,9 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   if (extension == ".npy" || extension == ".mtx") {
     const auto named = extension == ".npy" ? MatrixFormat::npy : MatrixFormat::matrix_market;
     if (options.format && *options.format != named)
-      throw UsageError("--matrix contradicts the extension of -o '" + options.output + "'");
+      throw UsageError("--matrix contradicts the extension of -o '" + arguments.output.string() + "'");
     arguments.format = named;
-  } else if (!is_by_rays(options)) {
+  } else if (!is_by_rays) {
     arguments.request.assembly.keep_errors = arguments.request.assembly.estimator == Estimator::automatic;
   }
   require_not_read({{"-o", arguments.output}}, arguments.models);
@@ -159,77 +130,65 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
 }
 
 // The common end of the commands that write a folder, and a page beside it.
-template <typename To>
-To finished_folder(const ResearchOptions& options, const std::string& command, To arguments) {
+template <typename Arguments>
+Arguments finished_folder(const ResearchOptions<Arguments>& options, const std::string& command) {
   require_model(options, command, " -o FOLDER");
-  take_common(options, arguments);
-  arguments.output = options.output;
-  arguments.page = options.page;
+  Arguments arguments = options.arguments;
+  take_model(options.model, arguments);
   if (arguments.output.empty()) throw UsageError(command + ": nothing would be written\nhint: -o FOLDER");
   require_page_elsewhere(arguments.page, arguments.output);
   require_not_read({{"--html", arguments.page}}, arguments.models);
   return arguments;
 }
 
-struct ComparisonOptions : ResearchOptions {
-  CompareOptions compare;
-};
+using ComparisonOptions = ResearchOptions<ComparisonArguments>;
 
-std::vector<Contestant> contestants(const std::string& text) {
+std::vector<Contestant> contestants(const std::string& option, const std::string& text) {
   std::vector<std::pair<std::string, Contestant>> allowed;
   for (const Contestant& contestant : all_contestants()) allowed.emplace_back(name_of(contestant), contestant);
   std::vector<Contestant> chosen;
   for (const std::string& word : split(text)) {
-    const auto contestant = choice<Contestant>("--solvers", word, allowed);
+    const auto contestant = choice<Contestant>(option, word, allowed);
     const auto is_same = [&](const Contestant& other) { return name_of(other) == name_of(contestant); };
     if (std::any_of(chosen.begin(), chosen.end(), is_same))
-      throw refusal("--solvers", text, "every solver once; " + word + " is there twice");
+      throw refusal(option, text, "every solver once; " + word + " is there twice");
     chosen.push_back(contestant);
   }
-  if (chosen.empty()) throw refusal("--solvers", text, "names of solvers with commas in between");
+  if (chosen.empty()) throw refusal(option, text, "names of solvers with commas in between");
   return chosen;
 }
 
-void add_comparison_options(CLI::App& command, ComparisonOptions& to) {
-  CompareOptions& compare = to.compare;
+void add_comparison_options(CLI::App& command, ComparisonArguments& to) {
+  CompareOptions& compare = to.options;
   add_output_option(command, to);
   add_page_option(command, to.page);
-  add(command, "--solvers", [&compare](const std::string& text) { compare.contestants = contestants(text); });
-  add_tolerance_option(command, 1e-9, [&compare](double error) { compare.relative_error = error; });
-  add(command, "--max-iterations", [&compare](const std::string& text) {
-    compare.max_iterations = static_cast<int>(whole_number("--max-iterations", text, 1, 1'000'000));
-  });
-  add_flag(command, "--no-series", [&compare] { compare.keep_iterates = false; });
+  add(command, "--solvers", compare.contestants, contestants);
+  add_tolerance_option(command, 1e-9, compare.relative_error);
+  add_whole(command, "--max-iterations", compare.max_iterations, 1, 1'000'000);
+  add_flag(command, "--no-series", compare.keep_iterates, false);
   add_closure_option(command, to.request);
   add_relaxation_option(command, compare.relaxation);
 }
 
 ComparisonArguments finish_comparison(const ComparisonOptions& options) {
-  ComparisonArguments arguments;
-  arguments.options = options.compare;
-  arguments = finished_folder(options, "compare-solvers", std::move(arguments));
+  ComparisonArguments arguments = finished_folder(options, "compare-solvers");
   check(arguments.request, arguments.options);
   return arguments;
 }
 
-struct ConvergenceOptions : ResearchOptions {
-  StudyOptions study;
-};
+using ConvergenceOptions = ResearchOptions<ConvergenceArguments>;
 
-void add_convergence_options(CLI::App& command, ConvergenceOptions& to) {
+void add_convergence_options(CLI::App& command, ConvergenceArguments& to) {
   add_output_option(command, to);
   add_page_option(command, to.page);
-  add(command, "--sizes",
-      [&to](const std::string& text) { to.study.sizes = static_cast<int>(whole_number("--sizes", text, 2, 8)); });
-  add_tolerance_option(command, 1e-10, [&to](double error) { to.request.solver.relative_error = error; });
-  add_flag(command, "--no-adaptive", [&to] { to.study.adaptive = false; });
-  add_flag(command, "--no-estimators", [&to] { to.study.estimators = false; });
+  add_whole(command, "--sizes", to.options.sizes, 2, 8);
+  add_tolerance_option(command, 1e-10, to.request.solver.relative_error);
+  add_flag(command, "--no-adaptive", to.options.adaptive, false);
+  add_flag(command, "--no-estimators", to.options.estimators, false);
 }
 
 ConvergenceArguments finish_convergence(const ConvergenceOptions& options) {
-  ConvergenceArguments arguments;
-  arguments.options = options.study;
-  arguments = finished_folder(options, "convergence", std::move(arguments));
+  ConvergenceArguments arguments = finished_folder(options, "convergence");
   check_for_study(arguments.request);
   return arguments;
 }
@@ -239,64 +198,68 @@ ConvergenceArguments finish_convergence(const ConvergenceOptions& options) {
 Finish add_crosscheck(CLI::App& tool) {
   auto to = std::make_shared<CrosscheckOptions>();
   CLI::App& command = *tool.add_subcommand("crosscheck");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_effect_options(command, to->request, effects_but({}));
-  add_crosscheck_options(command, *to);
-  add_patch_options(command, to->request);
-  add_graded_option(command, to->request);
-  add_refinement_options(command, to->request);
-  add_sampling_options(command, to->request);
-  add_method_options(command, to->request);
-  add_closure_option(command, to->request);
-  add_machine_options(command, to->request);
-  add_quiet_option(command, to->quiet);
+  add_sides_option(command, request.mesh.sides);
+  add_effect_options(command, request, effects_but({}));
+  add_crosscheck_options(command, to->arguments);
+  add_patch_options(command, to->model, request);
+  add_graded_option(command, request);
+  add_refinement_options(command, request);
+  add_sampling_options(command, request);
+  add_method_options(command, request);
+  add_closure_option(command, request);
+  add_machine_options(command, request);
+  add_quiet_option(command, to->arguments.quiet);
   return [to] { return finish_crosscheck(*to); };
 }
 
 Finish add_form_factors(CLI::App& tool) {
   auto to = std::make_shared<FormFactorOptions>();
   CLI::App& command = *tool.add_subcommand("form-factors");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_effect_options(command, to->request, {Effect::reach, Effect::backs});
+  add_sides_option(command, request.mesh.sides);
+  add_effect_options(command, request, {Effect::reach, Effect::backs});
   add_form_factor_options(command, *to);
-  add_closure_option(command, to->request);
-  add_patch_options(command, to->request);
-  add_graded_option(command, to->request);
-  add_stored_method_options(command, to->request);
-  add_sampling_options(command, to->request);
-  add_machine_options(command, to->request);
-  add_quiet_option(command, to->quiet);
+  add_closure_option(command, request);
+  add_patch_options(command, to->model, request);
+  add_graded_option(command, request);
+  add_method_options(command, request, true);
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
+  add_quiet_option(command, to->arguments.quiet);
   return [to] { return finish_form_factors(*to); };
 }
 
 Finish add_compare_solvers(CLI::App& tool) {
   auto to = std::make_shared<ComparisonOptions>();
   CLI::App& command = *tool.add_subcommand("compare-solvers");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_effect_options(command, to->request, effects_but({Effect::interreflection}));
-  add_comparison_options(command, *to);
-  add_patch_options(command, to->request);
-  add_graded_option(command, to->request);
-  add_sampling_options(command, to->request);
-  add_machine_options(command, to->request);
-  add_quiet_option(command, to->quiet);
+  add_sides_option(command, request.mesh.sides);
+  add_effect_options(command, request, effects_but({Effect::interreflection}));
+  add_comparison_options(command, to->arguments);
+  add_patch_options(command, to->model, request);
+  add_graded_option(command, request);
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
+  add_quiet_option(command, to->arguments.quiet);
   return [to] { return finish_comparison(*to); };
 }
 
 Finish add_convergence(CLI::App& tool) {
   auto to = std::make_shared<ConvergenceOptions>();
   CLI::App& command = *tool.add_subcommand("convergence");
+  Request& request = to->arguments.request;
   add_model_options(command, to->model);
-  add_sides_option(command, to->request);
-  add_effect_options(command, to->request, effects_but({Effect::interreflection}));
-  add_convergence_options(command, *to);
-  add_patch_options(command, to->request);
-  add_sampling_options(command, to->request);
-  add_machine_options(command, to->request);
-  add_quiet_option(command, to->quiet);
+  add_sides_option(command, request.mesh.sides);
+  add_effect_options(command, request, effects_but({Effect::interreflection}));
+  add_convergence_options(command, to->arguments);
+  add_patch_options(command, to->model, request);
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
+  add_quiet_option(command, to->arguments.quiet);
   return [to] { return finish_convergence(*to); };
 }
 

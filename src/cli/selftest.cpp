@@ -1,9 +1,8 @@
 #include "base/parallel.h"
 #include "base/rounded.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
+#include "cli/messages.h"
 #include "cli/progress.h"
-#include "cli/text_table.h"
 #include "output/file/whole_file.h"
 #include "output/report/write_checks.h"
 

@@ -6,19 +6,17 @@
 
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
-#include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "cli/output_options.h"
-#include "cli/picture.h"
 #include "cli/progress.h"
-#include "cli/run_options.h"
+#include "cli/render.h"
 #include "cli/solve_input.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
+#include "output/image/write_lightmap.h"
 #include "output/plot/write_sensor_map.h"
 #include "output/vtk/write_vtk.h"
 #include "page/write_page.h"
@@ -39,12 +37,11 @@
 namespace patchlight::cli {
 namespace {
 
-// What is looked at of a solution.
+// The views of a solution.
 struct Views {
   std::vector<std::filesystem::path> points_outputs;
   SensorView sensors;
-  std::optional<Picture> picture;
-  std::optional<Picture> page_picture;  // where a page is wanted and no picture
+  std::optional<Picture> picture;  // of the file, or of the page alone
   std::optional<Lightmap> lightmap;
   std::optional<InputError> lightmap_error;
 };
@@ -58,8 +55,8 @@ struct Results {
   Provenance provenance;
 };
 
-// The iterates of the last solutions: that which is written need not be the last, when the run was stopped or a second
-// solution was no better.
+// The iterates of the last three solutions: that which is written need not be the last, when the run was stopped or a
+// second solution was no better.
 class Iterates {
  public:
   explicit Iterates(bool wanted) : wanted_(wanted) {}
@@ -67,7 +64,7 @@ class Iterates {
   void add(const Progress& progress) {
     if (!wanted_ || !progress.irradiance) return;
     if (progress.iteration->number == 0) {
-      if (solutions_.size() == most) solutions_.pop_front();
+      if (solutions_.size() == 3) solutions_.pop_front();
       solutions_.emplace_back();
     }
     solutions_.back().emplace_back(progress.irradiance().cast<float>());
@@ -96,7 +93,6 @@ class Iterates {
     });
   }
 
-  static constexpr std::size_t most = 3;
   bool wanted_;
   std::deque<std::vector<IterateIrradiance>> solutions_;
 };
@@ -111,7 +107,7 @@ void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.points_outputs) check_writable(file);
 }
 
-// Reads what is solved, and checks what could be refused only after hours.
+// Reads the input, and checks all that could fail only after hours.
 SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   if (!observer({.stage = Stage::read})) throw Cancelled();
   SolveInput input = read_input(arguments);
@@ -134,11 +130,7 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
     throw InputError("--map",
                      "daylight factors need a CIE overcast sky as the only light\n"
                      "hint: --sky overcast:10000lx, or --map illuminance");
-  if (const std::optional<Camera> camera = camera_for(arguments.picture, input.scene)) {
-    const Reach reach = reach_of(input.scene);
-    require_in_reach(reach, camera->eye, "--camera", "the eye");
-    require_in_reach(reach, camera->target, "--camera", "the target");
-  }
+  require_camera_in_reach(arguments.picture, input.scene);
   return input;
 }
 
@@ -153,12 +145,9 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
       views.points_outputs = std::move(files);
       looking.finish(Stage::gather);
     }
-    if (!arguments.picture.file.empty()) {
+    if (!arguments.picture.file.empty() || !arguments.page.empty()) {
       views.picture = make_picture(arguments.picture, scene, simulation, observer);
-      if (views.picture->unfinished) simulation.unfinished = true;
-      looking.finish(Stage::render);
-    } else if (!arguments.page.empty()) {
-      views.page_picture = make_picture(arguments.picture, scene, simulation, observer);
+      if (views.picture->unfinished && !arguments.picture.file.empty()) simulation.unfinished = true;
       looking.finish(Stage::render);
     }
     if (!arguments.lightmap.folder.empty()) {
@@ -175,15 +164,6 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
   return views;
 }
 
-// The views that are finished when the run is stopped.
-Views views_until_stopped(const Scene& scene, Simulation& simulation, const SolveArguments& arguments,
-                          const Observer& observer) {
-  if (!arguments.discards) keep_what_is_there();
-  Views views = views_of(scene, simulation, arguments, observer);
-  if (!may_write_what_is_there()) throw Cancelled();
-  return views;
-}
-
 Report report_on(const Results& results, const Request& request) {
   const SensorView& sensors = results.views.sensors;
   const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
@@ -191,21 +171,14 @@ Report report_on(const Results& results, const Request& request) {
                    are_read ? sensor_facts(results.scene->sensors, sensors.readings, sensors.warnings) : SensorFacts{});
 }
 
-// Tells of each mesh as soon as it is solved, unless the run is quiet.
+// Prints a line for each mesh as soon as it is solved, unless the run is quiet.
 LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
-  if (arguments.verbosity == Verbosity::quiet) return {};
+  if (arguments.quiet) return {};
   return [&line](const Simulation& simulation) {
     line.hide();
     const std::vector<AccuracyStep>& meshes = simulation.accuracy;
     print_message(("mesh " + std::to_string(meshes.size())).c_str(), step_in_words(meshes.back()));
   };
-}
-
-// Before it begins.
-void tell_of_long_work(const Scene& scene, const SolveArguments& arguments, ProgressLine& line) {
-  if (arguments.verbosity == Verbosity::quiet) return;
-  line.hide();
-  for (const Diagnostic& problem : problems_with_sensors(scene)) print_diagnostic("note", problem);
 }
 
 // The scene and its solution.
@@ -219,7 +192,8 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   reading.finish(Stage::read);
   line.hide();
   print_scene_warnings(*results.scene);
-  tell_of_long_work(*results.scene, arguments, line);
+  if (!arguments.quiet)
+    for (const Diagnostic& problem : problems_with_sensors(*results.scene)) print_diagnostic("note", problem);
 
   Iterates iterates(!arguments.series.empty());
   const auto observed = [&](const Progress& progress) {
@@ -240,13 +214,7 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   return results;
 }
 
-// What the plane of a grid cuts of the model.
-std::vector<std::array<Point, 2>> section_at(const SensorGroup& group, const Scene& scene) {
-  if (group.sensors.empty()) return {};
-  return section_of(scene, group.sensors[0].point, group.sensors[0].normal);
-}
-
-// As a table, or as maps.
+// As a table, or as maps with the lines in which the plane of each grid cuts the model.
 void write_readings(const std::filesystem::path& file, const Results& results, MapOptions map) {
   const Readings& readings = results.views.sensors.readings;
   if (file.extension() != ".svg" && file.extension() != ".png")
@@ -254,7 +222,11 @@ void write_readings(const std::filesystem::path& file, const Results& results, M
   map.up = results.scene->up;
   map.north = results.scene->north;
   map.north_known = results.scene->sun || results.scene->sky;
-  for (const SensorGroup& group : results.scene->sensors) map.sections.push_back(section_at(group, *results.scene));
+  for (const SensorGroup& group : results.scene->sensors) {
+    map.sections.emplace_back();
+    if (group.sensors.empty()) continue;
+    map.sections.back() = section_of(*results.scene, group.sensors[0].point, group.sensors[0].normal);
+  }
   write_sensor_map(file, results.scene->sensors, readings, map);
 }
 
@@ -263,7 +235,6 @@ Page page_of_run(const Results& results, const SolvedSurface& surface) {
   Page page{.scene = *results.scene, .provenance = results.provenance, .surface = &surface, .report = &results.report};
   if (views.sensors.readings.irradiance.size() > 0) page.readings = &views.sensors.readings;
   if (views.picture) page.pictures.push_back(&*views.picture);
-  if (views.page_picture) page.pictures.push_back(&*views.page_picture);
   return page;
 }
 
@@ -316,7 +287,7 @@ void write_views(const SolveArguments& arguments, const Results& results, const 
   add(arguments.page, [&](const Path& to) { write_page(to, page_of_run(results, *surface)); });
   if (views.picture) {
     add(arguments.picture.file, [&](const Path& to) { write_picture_file(to, *views.picture, *results.scene); });
-    add(arguments.picture.error_map, [&](const Path& to) { write_error_map(to, *views.picture); });
+    add(arguments.picture.error_map, [&](const Path& to) { write_picture_errors(to, *views.picture); });
   }
   for (const Path& file : views.points_outputs)
     add(file, [&](const Path& to) { write_readings(to, results, arguments.map); });
@@ -349,20 +320,17 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
 // Prints warnings, then the results that the user asked for, the files, the facts of the run, and notes.
 void print_results(const SolveArguments& arguments, const Results& results,
                    const std::vector<std::filesystem::path>& written, const Diagnostics& of_checkpoint) {
-  constexpr std::size_t most_notes = 5;
-  const bool is_quiet = arguments.verbosity == Verbosity::quiet;
-  const bool is_verbose = arguments.verbosity == Verbosity::verbose;
   for (const Diagnostic& warning : results.views.sensors.warnings) print_diagnostic("warning", warning);
-  if (results.views.picture) {
+  if (results.views.picture && !arguments.picture.file.empty()) {
     if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
   }
-  if (is_quiet) return;
-  std::cout << summary_of_results(results.report, is_verbose,
+  if (arguments.quiet) return;
+  std::cout << summary_of_results(results.report, arguments.verbose,
                                   how_to_know_errors(arguments, results.report.solution.unfinished));
   if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
-  std::cout << files_line(written) << summary_of_run(results.report, is_verbose) << std::flush;
+  std::cout << files_line(written) << summary_of_run(results.report, arguments.verbose) << std::flush;
   const Diagnostics all = merged({of_checkpoint, notes(*results.scene, results.simulation)});
-  print_notes(all, false, is_verbose ? all.size() : most_notes);
+  print_notes(all, false, arguments.verbose ? all.size() : 5);
 }
 
 // Warns of results that are worse than those asked for.
@@ -387,10 +355,9 @@ ExitCode solve(const SolveArguments& arguments) {
   Checkpoint checkpoint = arguments.checkpoint.empty() ? Checkpoint() : Checkpoint(arguments.checkpoint);
 
   const ThreadLimit limit(arguments.request.resources.threads);
-  const bool quiet = arguments.verbosity == Verbosity::quiet;
-  if (const auto note = note_on_accuracy(arguments.request); note && !quiet) print_message("note", *note);
+  print_note_on_accuracy(arguments.request, arguments.quiet);
   // 1. Solve, and write the solution
-  std::optional<ProgressLine> line(progress_shown(quiet));
+  std::optional<ProgressLine> line(progress_shown(arguments.quiet));
   const Observer observer = observer_on(*line);
   Results results = solved(arguments, checkpoint, *line, observer);
   if (!arguments.discards) keep_what_is_there();
@@ -401,7 +368,9 @@ ExitCode solve(const SolveArguments& arguments) {
   write_solution(arguments, results, surface, outputs);
 
   // 2. Look at it, and write the views
-  results.views = views_until_stopped(*results.scene, results.simulation, arguments, observer);
+  if (!arguments.discards) keep_what_is_there();
+  results.views = views_of(*results.scene, results.simulation, arguments, observer);
+  if (!may_write_what_is_there()) throw Cancelled();
   results.report = report_on(results, arguments.request);
   line.reset();
   write_views(arguments, results, surface, outputs);

@@ -5,13 +5,16 @@
 #include "archive/form_factor_files.h"
 #include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
-#include "input/tables/read_points.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
+#include "output/file/whole_file.h"
+#include "plan/choose_storage.h"
 #include "plan/memory.h"
 #include "scene/specular_faces.h"
 
 #include <cmath>
 #include <sstream>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -51,14 +54,13 @@ HeldShares held_shares(const Scene& scene, Reflections reflections) {
   return held;
 }
 
-// What clear faces and mirrors let go on is in the form factors, and in the area of their patches.
+// The light that clear faces and mirrors pass on is in the form factors, and in the area of their patches.
 void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
                         const HeldShares& held) {
-  constexpr double rounding = 1e-5;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const double then = stored.area[i] / mesh.area[i];
     const double now = held[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
-    if (stored.lost.covered[i] > 0 || std::abs(then - now) <= rounding * now) continue;
+    if (stored.lost.covered[i] > 0 || std::abs(then - now) <= 1e-5 * now /* single precision */) continue;
     std::ostringstream text;
     text << "these form factors have a face that passes the fraction " << 1 - then
          << " of diffuse light as glazing or mirror; now it passes " << 1 - now
@@ -150,6 +152,43 @@ std::vector<std::filesystem::path> points_outputs(const SolveArguments& argument
   if (arguments.points_outputs.empty()) return {};
   throw InputError("--points-output",
                    "the scene file has no sensors\nhint: add a table [[sensors]], or give --points FILE");
+}
+
+Checkpoint::Checkpoint(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  made_ = std::filesystem::create_directories(folder_, error);
+  if (error) throw OutputError(folder_.string(), "cannot make this folder for --checkpoint: " + error.message());
+  check_writable(folder_ / "rows.npy");
+}
+
+RowBlocksOf Checkpoint::blocks(const RowScene& of) {
+  if (folder_.empty()) return {};
+  return [this, of](const PatchMesh& mesh, const RayOptions& options, std::span<const float> bright_densities) {
+    keys_.push_back(row_key(of, mesh, options, bright_densities));
+    RowBlocks blocks = row_blocks_in(folder_, keys_.back());
+    blocks.read = [this, read = std::move(blocks.read)](std::size_t block) {
+      auto words = read(block);
+      if (words) ++taken_;
+      return words;
+    };
+    return blocks;
+  };
+}
+
+void Checkpoint::remove() const {
+  if (folder_.empty()) return;
+  remove_row_blocks(folder_, keys_);
+  std::error_code ignored;
+  if ((made_ || taken_ > 0) && !std::filesystem::is_symlink(folder_, ignored))
+    std::filesystem::remove(folder_, ignored);
+}
+
+Diagnostics Checkpoint::notes() const {
+  if (taken_ == 0) return {};
+  return {{DiagnosticCode::checkpoint,
+           "--checkpoint: " + std::to_string(taken_) + (taken_ == 1 ? " block of rows" : " blocks of rows") +
+               " that an earlier run had kept in " + folder_.string(),
+           taken_}};
 }
 
 }  // namespace patchlight::cli

@@ -3,7 +3,6 @@
 #include "base/rounded.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
-#include "cli/text_table.h"
 #include "light/photometry.h"
 
 #include <algorithm>
@@ -14,15 +13,10 @@
 namespace patchlight::cli {
 namespace {
 
-// Where no bound on it is known, the error does not have it.
-std::string solver_in_words(const AccuracyStep& step) {
-  return std::isfinite(step.solver) ? percent(step.solver, 1) : "unknown";
-}
-
-// The parts of the error, each in percent.
+// The parts of the error, each in percent. Where no bound of the solver's is known, the error does not have it.
 std::string parts(const AccuracyStep& step) {
   return "mesh " + percent(step.mesh, 2) + ", form factors " + percent(step.form_factor, 2) + ", solver " +
-         solver_in_words(step);
+         (std::isfinite(step.solver) ? percent(step.solver, 1) : "unknown");
 }
 
 // Values per band, for three bands as R, G, B.
@@ -49,7 +43,7 @@ std::string convergence(const Report& report) {
   return text.str();
 }
 
-// How far off the patches' means may be, and what is drawn with them.
+// The errors of the patches' means, and the variation within patches.
 std::string errors(const Report& report) {
   std::string on;
   for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
@@ -65,11 +59,10 @@ std::string errors(const Report& report) {
   return text;
 }
 
-// What makes an error smaller that is too large to build on, where none was asked for.
+// The remedy for an error above 5 %, where no accuracy was asked for.
 std::string advice_on_errors(const Report& report) {
-  constexpr double large = 0.05;
   const AccuracyStep& step = report.accuracy.back();
-  if (refines(report.plan.accuracy) || !(known_error(step) > large)) return {};
+  if (refines(report.plan.accuracy) || !(known_error(step) > 0.05)) return {};
   const bool by_rays = report.plan.assembly.storage == Storage::rays;
   return std::string("hint: ") +
          (step.mesh >= step.form_factor ? "more --patches, or --accuracy, reduce this error"
@@ -90,16 +83,14 @@ std::string steps_table(const std::vector<AccuracyStep>& steps) {
   return text_table(rows);
 }
 
-// So many times what is usual may be by chance where few of the rays carry most of the flux.
-constexpr double most_by_noise = 10;
-
-// Rows of rays carry flux from patch to patch by chance: of R rays that carry equal parts of it 1 / sqrt(R) is off.
+// Rows of rays carry flux from patch to patch by chance: of R rays that carry equal parts of it 1 / sqrt(R) is off, and
+// up to ten times as much where few of the rays carry most of it.
 std::string why_imbalanced(const Report& report) {
   if (report.plan.assembly.storage != Storage::rays) return {};
   const double usual =
       1 / std::sqrt(static_cast<double>(report.plan.assembly.rays) * static_cast<double>(report.patches));
   if (report.balance.imbalance < usual / 10) return {};
-  const bool is_noise = report.balance.imbalance <= most_by_noise * usual;
+  const bool is_noise = report.balance.imbalance <= 10 * usual;
   return std::string(is_noise ? ", by the noise of the rays" : ", more than the noise of the rays explains") +
          ": up to a few times " + rounded(usual, 1) + " is usual, one over the root of their number";
 }
@@ -155,7 +146,7 @@ std::string sampling(const SamplingFacts& facts) {
          percent(facts.visible.bound, 2) + " % (seen) and " + percent(facts.occluded.bound, 2) + " % (hidden)";
 }
 
-// What the whole matrix has shown.
+// The counts of the whole matrix.
 std::string assembly(const FormFactorFacts& facts) {
   std::ostringstream text;
   const AssemblyCounts& counts = *facts.counts;
@@ -175,22 +166,15 @@ std::string assembly(const FormFactorFacts& facts) {
   return text.str();
 }
 
-// Of a patch in the mean, doubled ones included.
-int rays_of_rows(const Report& report) {
-  return report.accuracy.empty() ? report.plan.assembly.rays : report.accuracy.back().samples;
-}
-
 std::string details(const Report& report) {
-  std::ostringstream text;
-  for (const Decision& decision : report.plan.decisions) {
-    text << with_option_names(sentence(decision)) << '\n';
-  }
-  text << "estimator of form factors: " << name_of(report.plan.assembly.estimator) << '\n';
-  if (report.form_factors.counts) return text.str() + assembly(report.form_factors);
-  if (report.plan.assembly.storage == Storage::rays)
-    return text.str() + "form factors: sparse rows of " + std::to_string(rays_of_rows(report)) +
-           " rays per patch on average\n";
-  return text.str() + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
+  std::string text;
+  for (const Decision& decision : report.plan.decisions) text += with_option_names(sentence(decision)) + '\n';
+  text += std::string("estimator of form factors: ") + name_of(report.plan.assembly.estimator) + '\n';
+  if (report.form_factors.counts) return text + assembly(report.form_factors);
+  if (report.plan.assembly.storage != Storage::rays)
+    return text + "rows of form factors: computed on demand; pairs, rays and row sums are not known\n";
+  const int rays = report.accuracy.empty() ? report.plan.assembly.rays : report.accuracy.back().samples;
+  return text + "form factors: sparse rows of " + std::to_string(rays) + " rays per patch on average\n";
 }
 
 std::string error_text(double error) { return std::isnan(error) ? "not known" : rounded(error, 2); }
@@ -223,7 +207,7 @@ std::string sensor_lines(const Report& report, const std::string& how_to_know_er
          how_to_know_errors + '\n';
 }
 
-// "effects: occlusion, closure; left out: colour, sun; by option: closure"
+// "effects: occlusion, closure; left out: color, sun; by option: closure"
 std::string effects_line(const std::vector<Decision>& decisions) {
   std::string on, off, forced;
   for (const Decision& decision : decisions) {
@@ -239,6 +223,12 @@ std::string effects_line(const std::vector<Decision>& decisions) {
 
 Diagnostics notes(const Scene& scene, const Simulation& simulation) {
   return merged({simulation.notes, remarks_of(scene), simulation.plan.sides.notes});
+}
+
+void print_note_on_accuracy(const Request& request, bool quiet) {
+  if (quiet || !request.accuracy.relative_error) return;
+  print_message("note", "refining until the estimated error of mesh, form factors and solver is below " +
+                            percent(*request.accuracy.relative_error, 4) + " %");
 }
 
 void print_notes(const Diagnostics& notes, bool quiet, std::size_t most) {
@@ -337,14 +327,12 @@ std::string explain_not_converged(const Report& report) {
   }
   const std::string asked = "NOT converged to " + rounded(tolerance_of(plan.solver), 2) + ". ";
   const Iteration& last = solution.history.back();
-  constexpr double rounding = 1e-13;
-  if (last.relative_residual < rounding) {
+  if (last.relative_residual < 1e-13) {  // rounding
     return asked + "The residual is at rounding level\nhint: a larger --tolerance";
   }
   std::string advice = std::to_string(plan.solver.max_iterations) +
                        " iterations are too few for this solver\nhint: a larger --max-iterations or --tolerance";
-  constexpr double nearly_all = 0.99;
-  if (solution.highest_reflectance > nearly_all) {
+  if (solution.highest_reflectance > 0.99) {
     advice += "\nhint: or lower the largest reflectance, " + rounded(solution.highest_reflectance, 6) + ", with --set";
   }
   return asked + advice;

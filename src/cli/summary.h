@@ -15,6 +15,9 @@ namespace patchlight::cli {
 /// about the results stand first.
 Diagnostics notes(const Scene& scene, const Simulation& simulation);
 
+/// Prints at the beginning of a run which accuracy is asked for, if one is.
+void print_note_on_accuracy(const Request& request, bool quiet);
+
 /// Prints the first `most` notes and the number of the others, unless the run is quiet.
 void print_notes(const Diagnostics& notes, bool quiet, std::size_t most = std::numeric_limits<std::size_t>::max());
 
@@ -29,13 +32,13 @@ std::string summary_of_run(const Report& report, bool long_form);
 /// "wrote a, b, c" as one line; without those that are empty.
 std::string files_line(const std::vector<std::filesystem::path>& files);
 
-/// Why a run was left unfinished, and what the files hold.
+/// Why a run was left unfinished, and the content of the files.
 std::string explain_unfinished(const Report& report);
 
-/// Why a solution that has not converged probably has not, and what to do.
+/// The probable reason why a solution has not converged, and a remedy.
 std::string explain_not_converged(const Report& report);
 
-/// What has been reached instead of the accuracy that was asked for, what limits it, and what to do.
+/// The accuracy that was reached, its main limit, and a remedy.
 std::string explain_not_accurate(const Report& report);
 
 /// The error of a mesh as a share: of all parts that are known.

@@ -1,5 +1,3 @@
-#include "cli/text_table.h"
-
 #include "cli/messages.h"
 
 #include <algorithm>

@@ -74,7 +74,7 @@ void confine_process(const std::vector<std::filesystem::path>& readable) {
   forbid_sockets();
 }
 
-// The first byte of what the child sends.
+// The first byte of the child's message.
 constexpr char sends_result = 'S';
 constexpr char sends_refusal = 'R';  // the text of an InputError
 constexpr char sends_failure = 'F';  // any other exception's
@@ -100,7 +100,7 @@ void limit_memory(const std::string& file, rlim_t most_bytes) {
 void prepare_child(const std::string& file, const ChildLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
-    // What the caller ignores stays ignored.
+    // Signals that the caller ignores stay ignored.
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   const rlimit seconds = {limits.seconds, limits.seconds};

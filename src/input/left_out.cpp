@@ -1,6 +1,5 @@
 #include "input/left_out.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 #include "scene/model_face.h"
 
@@ -9,8 +8,6 @@
 
 namespace patchlight {
 namespace {
-
-constexpr std::size_t most_names = 5;
 
 // A diagnostic on all things of one kind that were left out for one reason.
 struct Remark {
@@ -72,7 +69,7 @@ Scene LeftOut::on(Scene scene) const {
     found->count += entry.count;
     found->faces.insert(found->faces.end(), entry.faces.begin(), entry.faces.end());
     if (entry.name.empty()) continue;
-    found->has_more_names = found->names.size() == most_names;
+    found->has_more_names = found->names.size() == 5;
     if (!found->has_more_names) found->names.push_back(entry.name);
   }
   for (const Remark& remark : remarks)

@@ -5,14 +5,14 @@
 
 #include "base/near_match.h"
 #include "base/rounded.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
+#include "input/materials.h"
 #include "input/text.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <numbers>
@@ -35,32 +35,35 @@ std::string file_of(const Scene& scene, const Polygon& polygon) {
   return polygon.file < scene.files.size() ? scene.files[polygon.file] : scene.file;
 }
 
-[[noreturn]] void refuse_faces(const Scene& scene, const std::string& pattern, const std::string& where) {
-  std::set<std::string> names;
+// The pattern is of none of the groups and none of these names; `kinds` is "object, group or file".
+[[noreturn]] void refuse_pattern(const Scene& scene, std::set<std::string> names, const std::string& kinds,
+                                 const std::string& pattern, const std::string& where) {
   for (std::uint32_t group = 0; group < scene.groups.size(); ++group) names.insert(group_name(scene, group));
-  for (const std::string& file : scene.files) names.insert(std::filesystem::path(file).filename().string());
   const std::vector<std::string> allowed(names.begin(), names.end());
   const std::string hint = suggestion(pattern, allowed);
-  throw InputError(where, "no face is of an object, group or file '" + pattern + "'" +
+  throw InputError(where, "no face is of an " + kinds + " '" + pattern + "'" +
                               (hint.empty() ? "; patchlight check --all lists the names" : hint));
 }
+
+std::string name_of_file(const std::string& file) { return std::filesystem::path(file).filename().string(); }
 
 // Per polygon whether its object, its group or its file bears this name or matches it as a pattern with * and ?; a
 // file by the last part of its path, or by the whole of it without a pattern. Throws InputError at `where` when that
 // is none.
 std::vector<bool> faces_of(const Scene& scene, const std::string& pattern, const std::string& where) {
-  const auto is_meant = [&pattern](const std::string& name) { return name == pattern || matches(name, pattern); };
   std::vector<bool> groups;
   for (std::uint32_t group = 0; group < scene.groups.size(); ++group)
-    groups.push_back(is_meant(group_name(scene, group)));
+    groups.push_back(matches(group_name(scene, group), pattern));
   std::vector<bool> faces;
   for (const Polygon& polygon : scene.polygons) {
     const std::string file = file_of(scene, polygon);
     const bool by_group = polygon.group < groups.size() && groups[polygon.group];
-    faces.push_back(by_group || file == pattern || is_meant(std::filesystem::path(file).filename().string()));
+    faces.push_back(by_group || file == pattern || matches(name_of_file(file), pattern));
   }
-  if (std::find(faces.begin(), faces.end(), true) == faces.end()) refuse_faces(scene, pattern, where);
-  return faces;
+  if (std::find(faces.begin(), faces.end(), true) != faces.end()) return faces;
+  std::set<std::string> names;
+  for (const std::string& file : scene.files) names.insert(name_of_file(file));
+  refuse_pattern(scene, std::move(names), "object, group or file", pattern, where);
 }
 
 // The materials of these polygons, in order.
@@ -106,7 +109,7 @@ constexpr const char* settable =
     "reflectance, specular_reflectance, transmittance or diffuse_transmittance (0 to 1, or in %), exitance (W/m^2), "
     "radiance (W/(m^2 sr)) or index, as numbers without a unit";
 
-// How light is set that is known as a flux: what the material's faces emit goes by their area.
+// Advice on a light that is known as a flux: a material's exitance is flux by area.
 std::string advice_on_flux(const std::string& quantity) {
   constexpr std::array words{"flux", "luminous_flux", "lumens", "lumen", "lm", "watts", "watt", "W", "power"};
   if (std::find(words.begin(), words.end(), quantity) == words.end()) return {};
@@ -117,17 +120,12 @@ std::string advice_on_flux(const std::string& quantity) {
 }
 
 Quantity quantity_named(const std::string& name, const std::string& text) {
-  if (name == "reflectance") return Quantity::reflectance;
-  if (name == "exitance") return Quantity::exitance;
-  if (name == "radiance") return Quantity::radiance;
-  if (name == "transmittance") return Quantity::transmittance;
-  if (name == "index") return Quantity::index;
-  if (name == "specular_reflectance") return Quantity::specular_reflectance;
-  if (name == "diffuse_transmittance") return Quantity::diffuse_transmittance;
+  for (const auto& [word, quantity] : named_quantities)
+    if (name == word && quantity != Quantity::light_spectrum) return quantity;
   refuse_setting(text, "'" + name + "' cannot be set; expected " + settable + advice_on_flux(name));
 }
 
-// What a value of a quantity is.
+// The form of a quantity's value.
 const char* expected_value(Quantity quantity) {
   if (is_share(quantity)) return "a share from 0 to 1, or in percent, e.g. 30%";
   if (quantity == Quantity::exitance) return "W/m^2 without the unit, e.g. 10";
@@ -144,14 +142,11 @@ std::optional<double> number_or_percent(const std::string& word, Quantity quanti
 
 Spectrum comma_separated(const std::string& list, const std::string& text, Quantity quantity) {
   std::vector<double> values;
-  std::size_t begin = 0;
-  while (begin <= list.size()) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    const std::string word(trimmed(std::string_view(list).substr(begin, end - begin)));
+  for (const std::string_view part : between_commas(list)) {
+    const std::string word(trimmed(part));
     const std::optional<double> value = number_or_percent(word, quantity);
     if (!value) refuse_setting(text, "'" + word + "' is not a finite number; expected " + expected_value(quantity));
     values.push_back(*value);
-    begin = end + 1;
   }
   if (values.size() != 1 && values.size() != 3) {
     refuse_setting(text, std::to_string(values.size()) + " values; expected one for all bands, or three: R,G,B");
@@ -168,7 +163,7 @@ Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
                                       std::to_string(bands) + " bands");
 }
 
-// Of light. In bands of wavelengths what is set is linear RGB, spread as colours are that are read: one number makes a
+// Of light. In bands of wavelengths what is set is linear RGB, spread as colors are that are read: one number makes a
 // lamp that emits as bright as that would be in the bands there are, and leaves how its light is spread.
 Spectrum set_light(const MaterialSetting& setting, const Material& material, const Bands& bands) {
   if (!are_of_wavelengths(bands)) return spread(setting, material.exitance.size());
@@ -180,7 +175,7 @@ Spectrum set_light(const MaterialSetting& setting, const Material& material, con
   return light;
 }
 
-// What is known of a quantity by wavelength; null for one that has no spectrum.
+// The spectrum of a quantity by wavelength; null for one that has none.
 std::shared_ptr<const SampledSpectrum>* sampled_of(MaterialSpectra& spectra, Quantity quantity) {
   switch (quantity) {
     case Quantity::reflectance:
@@ -210,7 +205,7 @@ MaterialSpectra changed(MaterialSpectra spectra, const MaterialSetting& setting)
   return spectra;
 }
 
-// A value for each band. What a setting makes a pane is no mirror of the file's, and the other way round; one of 0
+// A value for each band. A pane made by a setting is no mirror of the file's, and the other way round; one of 0
 // takes back the file's own.
 Material with_quantity(Material material, Quantity quantity, const Spectrum& value) {
   const bool is_some = (value > 0).any();
@@ -298,6 +293,59 @@ void require_transmittance(const std::vector<Material>& materials, const std::ve
                                       setting.material + ".transmittance=0.8, or leave the index out");
 }
 
+// Newell's: the scene is not repaired yet.
+double area_of(const Scene& scene, PolygonIndex polygon) {
+  const std::vector<Point> points = corner_points(scene, polygon);
+  Vector twice = Vector::Zero();
+  for (std::size_t k = 0; k < points.size(); ++k)
+    twice += (points[k] - points[0]).cross(points[(k + 1) % points.size()] - points[0]);
+  return twice.norm() / 2;
+}
+
+// For each group and each material whether a pattern means it; the second of a pair. \throws InputError when none is.
+struct Meant {
+  std::vector<bool> groups;
+  std::vector<bool> materials;
+  bool operator()(const Polygon& polygon) const { return groups[polygon.group] || materials[polygon.material]; }
+};
+
+Meant meant(const Scene& scene, const std::vector<std::string>& patterns, const std::string& where) {
+  Meant all{std::vector<bool>(scene.groups.size()), std::vector<bool>(scene.materials.size())};
+  for (const std::string& pattern : patterns) {
+    bool found = false;
+    for (std::uint32_t group = 0; group < scene.groups.size(); ++group) {
+      if (!matches(group_name(scene, group), pattern)) continue;
+      all.groups[group] = found = true;
+    }
+    for (std::size_t material = 0; material < scene.materials.size(); ++material) {
+      if (!matches(scene.materials[material].name, pattern)) continue;
+      all.materials[material] = found = true;
+    }
+    if (found) continue;
+    std::set<std::string> names;
+    for (const Material& material : scene.materials) names.insert(material.name);
+    refuse_pattern(scene, std::move(names), "object, group or material", pattern, where);
+  }
+  return all;
+}
+
+std::string note_on_rest(const Scene& scene, const std::vector<bool>& stays) {
+  std::set<std::uint32_t> groups;
+  std::size_t faces = 0;
+  double area = 0, all = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    const double own = area_of(scene, p);
+    all += own;
+    if (stays[p]) continue;
+    area += own;
+    ++faces;
+    groups.insert(scene.polygons[p].group);
+  }
+  return std::to_string(faces) + (faces == 1 ? " face of " : " faces of ") + std::to_string(groups.size()) +
+         (groups.size() == 1 ? " object, " : " objects, ") + rounded(100 * area / all, 2) +
+         " % of the area, do not take part, as asked";
+}
+
 }  // namespace
 
 bool is_share(MaterialSetting::Quantity quantity) {
@@ -362,6 +410,26 @@ MaterialSetting parse_material_setting(const std::string& text) {
   if (setting.quantity == Quantity::index && !is_index(setting.value))
     refuse_setting(text, std::string("an index of refraction is ") + expected_index);
   return setting;
+}
+
+Scene with_chosen_faces(Scene scene, const FaceChoice& choice, const std::string& where) {
+  if (choice.only.empty() && choice.leave_out.empty()) return scene;
+  const Meant only = meant(scene, choice.only, where + ".only");
+  const Meant leave_out = meant(scene, choice.leave_out, where + ".leave_out");
+  std::vector<bool> stays;
+  for (const Polygon& polygon : scene.polygons)
+    stays.push_back((choice.only.empty() || only(polygon)) && !leave_out(polygon));
+  if (std::find(stays.begin(), stays.end(), true) == stays.end())
+    throw InputError(where + (choice.leave_out.empty() ? ".only" : ".leave_out"),
+                     "found no face that stays; expected one at least");
+  if (std::find(stays.begin(), stays.end(), false) == stays.end()) return scene;
+  scene.diagnostics.push_back({DiagnosticCode::reduced_model, note_on_rest(scene, stays)});
+  std::vector<Polygon> polygons;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (stays[p]) polygons.push_back(std::move(scene.polygons[p]));
+  }
+  scene.polygons = std::move(polygons);
+  return with_used_materials(std::move(scene));
 }
 
 }  // namespace patchlight

@@ -4,26 +4,138 @@
 
 #include "files/sha256.h"
 #include "input/scene_bytes.h"
-#include "input/stb_picture.h"
 #include "input/text.h"
 #include "light/texture.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <stb/stb_image.h>
 #include <utility>
 
 namespace patchlight {
 namespace {
 
-// The 256 values of sRGB to linear, IEC 61966-2-1.
+enum class PictureFormat { png, jpeg, bmp, hdr, tga, unknown };
+
+// A TGA has no signature: its second byte states whether it has a palette. JPEG 2000, AVIF and ICO have a 0 there as
+// well, but no image type of a TGA in the third byte, by which stb_image refuses them.
+PictureFormat format_of_picture(std::string_view bytes) {
+  if (bytes.starts_with("\x89PNG")) return PictureFormat::png;
+  if (bytes.starts_with("\xFF\xD8\xFF")) return PictureFormat::jpeg;
+  if (bytes.starts_with("BM")) return PictureFormat::bmp;
+  if (bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n")) return PictureFormat::hdr;
+  const bool may_be_tga = bytes.size() >= 18 && static_cast<unsigned char>(bytes[1]) <= 1;
+  return may_be_tga ? PictureFormat::tga : PictureFormat::unknown;
+}
+
+// The bytes as stb_image reads them, which notice whether it wants more than there are: it goes on with zeros. Where
+// these would keep it for ever, as a run of length 0 does in Radiance's pictures, it gets 0xFF instead.
+class PictureBytes {
+ public:
+  PictureBytes(std::string_view bytes, bool goes_on) : bytes_(bytes), goes_on_(goes_on) {}
+
+  bool is_cut_off() const { return is_cut_off_; }
+  static stbi_io_callbacks callbacks() {
+    return {[](void* self, char* to, int size) { return static_cast<PictureBytes*>(self)->read(to, size); },
+            [](void* self, int size) { static_cast<PictureBytes*>(self)->skip(size); },
+            [](void* self) { return static_cast<int>(static_cast<PictureBytes*>(self)->is_at_end()); }};
+  }
+
+ private:
+  // stb_image reads ahead into a block, which is the first that it fills, and asks for all that it needs otherwise.
+  int read(char* to, int size) {
+    if (!block_) block_ = to;
+    const std::size_t asked = static_cast<std::size_t>(std::max(size, 0));
+    const std::size_t found = std::min(asked, bytes_.size() - at_);
+    if (found > 0) std::memcpy(to, bytes_.data() + at_, found);
+    at_ += found;
+    const bool is_enough = found == asked || (to == block_ && found > 0);
+    if (is_enough) return static_cast<int>(found);
+    is_cut_off_ = true;
+    if (!goes_on_) return static_cast<int>(found);
+    std::memset(to + found, 0xFF, asked - found);
+    return size;
+  }
+  void skip(int size) { at_ += std::min(static_cast<std::size_t>(std::max(size, 0)), bytes_.size() - at_); }
+  bool is_at_end() const { return at_ == bytes_.size(); }
+
+  std::string_view bytes_;
+  bool goes_on_;
+  const char* block_ = nullptr;
+  std::size_t at_ = 0;
+  bool is_cut_off_ = false;
+};
+
+PicturePixels with_fault(std::string fault) {
+  PicturePixels none;
+  none.fault = std::move(fault);
+  return none;
+}
+
+constexpr const char* unknown_format = "is neither PNG, JPEG, BMP, TGA nor Radiance HDR";
+
+std::string fault_of(PictureFormat format, const PictureBytes& bytes) {
+  if (!bytes.is_cut_off()) return "cannot be decoded; is it whole?";
+  // stb_image takes a run of the old kind, (1, 1, 1, length), for a pixel, and misses those that it stands for.
+  if (format == PictureFormat::hdr) return "has runs of the old kind, or is cut off";
+  return format == PictureFormat::tga ? "is cut off, if it is a TGA" : "is cut off";
+}
+
+constexpr const char* too_large = "has more than 8192 x 8192 pixels";
+
+// stb_image refuses sizes beyond its own limits as if it did not know the format; its readers name the cause at the
+// header.
+bool is_beyond_limits(std::string_view picture) {
+  const stbi_io_callbacks callbacks = PictureBytes::callbacks();
+  PictureBytes bytes(picture, false);
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<unsigned char[], FreeMemory> codes(
+      stbi_load_from_callbacks(&callbacks, &bytes, &width, &height, &channels, 0));
+  return !codes && std::strcmp(stbi_failure_reason(), "too large") == 0;
+}
+
+// A few hundred bytes can stand for very many pixels. Width, height and channels as the header states them; a fault
+// where it cannot be read or they are too many.
+PicturePixels stated_size(PictureFormat format, std::string_view picture) {
+  const stbi_io_callbacks callbacks = PictureBytes::callbacks();
+  PictureBytes bytes(picture, false);
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_callbacks(&callbacks, &bytes, &width, &height, &channels)) {
+    if (format == PictureFormat::tga) return with_fault(unknown_format);
+    const bool may_be_large = format == PictureFormat::png || format == PictureFormat::jpeg;
+    return with_fault(may_be_large && is_beyond_limits(picture) ? too_large : fault_of(format, bytes));
+  }
+  // A BMP that runs downwards states a negative height.
+  const std::uint64_t columns = static_cast<std::uint64_t>(std::max(width, 0));
+  const auto rows = static_cast<std::uint64_t>(std::abs(std::int64_t{height}));
+  if (columns * rows == 0) return with_fault(fault_of(format, bytes));
+  constexpr std::uint64_t most = std::uint64_t{8192} * 8192;
+  if (columns * rows > most) return with_fault(too_large);
+  if (format == PictureFormat::hdr && columns * rows > most / 2)
+    return with_fault("has more than 4096 x 8192 pixels, the most of a Radiance HDR");
+  PicturePixels size;
+  size.width = columns;
+  size.height = rows;
+  return size;
+}
+
+// Some programs write a fourth byte that the header says means nothing: that of a TGA in bits 0 to 3 of its last byte,
+// that of a BMP by the compression BI_RGB, 0, in the fourth word of the BITMAPINFOHEADER behind the first 14 bytes.
+bool alpha_means_something(PictureFormat format, std::string_view picture) {
+  if (format == PictureFormat::tga) return (static_cast<unsigned char>(picture[17]) & 0xFU) != 0;
+  return format != PictureFormat::bmp || picture.substr(30, 4) != std::string_view("\0\0\0\0", 4);
+}
+
+// The 256 values of sRGB to linear.
 std::array<double, 256> linear_values() {
   std::array<double, 256> values{};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double srgb = static_cast<double>(k) / 255.0;
-    values[k] = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-  }
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = linear_of_srgb(static_cast<double>(k) / 255.0);
   return values;
 }
 
@@ -32,7 +144,7 @@ class Pixels {
  public:
   explicit Pixels(const PicturePixels& picture) : picture_(picture), linear_(linear_values()) {}
 
-  // Grey alone, or grey and alpha, stands for all three.
+  // Grey alone, or gray and alpha, stands for all three.
   Rgb operator()(std::size_t pixel) const {
     const std::size_t first = pixel * picture_.channels;
     const std::size_t step = picture_.channels < 3 ? 0 : 1;
@@ -55,8 +167,7 @@ class Pixels {
     return (codes[0] + codes[step] + codes[2 * step]) / (3 * 255.0);
   }
   std::size_t alpha(std::size_t pixel) const {
-    constexpr std::size_t opaque = 255;
-    return picture_.has_alpha ? picture_.codes[(pixel + 1) * picture_.channels - 1] : opaque;
+    return picture_.has_alpha ? picture_.codes[(pixel + 1) * picture_.channels - 1] : std::size_t{255};
   }
 
  private:
@@ -170,7 +281,7 @@ std::size_t texels_of_one_of(std::size_t pictures) {
   return std::max(std::min(most_texels_of_picture, most_texels_of_model / pictures), std::size_t{1});
 }
 
-// What a mask says, as numbers in a row, and back.
+// A mask as numbers in a row, and back.
 Spectrum numbers_of_mask(const DecodedPicture& picture) {
   if (!picture.alpha) return Spectrum::Constant(1, picture.number);
   const Coverage coverage = coverage_by(*picture.alpha, [](double alpha) { return alpha; });
@@ -184,7 +295,65 @@ PictureMask mask_from(const Spectrum& numbers) {
   return {numbers[0], Spectrum(numbers.tail(3))};
 }
 
+// Least squares in the plane of the face: (u, v) = G q + c with q along two axes of the plane. Exact for triangles.
+std::optional<TextureMap> map_of(std::span<const Point> corners, std::span<const Eigen::Vector2d> places) {
+  const Vector normal = area_vector(corners);
+  if (!(normal.norm() > 0)) return std::nullopt;
+  Eigen::Matrix<double, 2, 3> axes;
+  axes.row(0) = normal.normalized().unitOrthogonal().transpose();
+  axes.row(1) = normal.normalized().cross(axes.row(0).transpose()).transpose();
+  const auto count = static_cast<double>(corners.size());
+  Point middle = Point::Zero();
+  Eigen::Vector2d middle_place = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    middle += corners[k] / count;
+    middle_place += places[k] / count;
+  }
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Eigen::Vector2d q = axes * (corners[k] - middle);
+    squares += q * q.transpose();
+    products += (places[k] - middle_place) * q.transpose();
+  }
+  if (!(std::abs(squares.determinant()) > 0)) return std::nullopt;
+  TextureMap map;
+  map.linear = products * squares.inverse() * axes;
+  map.offset = middle_place - map.linear * middle;
+  if (!map.linear.allFinite() || !map.offset.allFinite()) return std::nullopt;
+  return map;
+}
+
 }  // namespace
+
+PicturePixels decoded_pixels(std::string_view picture) {
+  const PictureFormat format = format_of_picture(picture);
+  if (format == PictureFormat::unknown) return with_fault(unknown_format);
+  PicturePixels pixels = stated_size(format, picture);
+  if (!pixels.fault.empty()) return pixels;
+
+  const stbi_io_callbacks callbacks = PictureBytes::callbacks();
+  const bool is_linear = format == PictureFormat::hdr;
+  PictureBytes bytes(picture, is_linear);
+  int width = 0, height = 0, channels = 0;
+  if (is_linear) {
+    pixels.linear.reset(stbi_loadf_from_callbacks(&callbacks, &bytes, &width, &height, &channels, 0));
+  } else {
+    pixels.codes.reset(stbi_load_from_callbacks(&callbacks, &bytes, &width, &height, &channels, 0));
+  }
+  const bool is_whole = (pixels.codes || pixels.linear) && !bytes.is_cut_off() && channels >= 1 && channels <= 4 &&
+                        static_cast<std::size_t>(width) == pixels.width &&
+                        static_cast<std::size_t>(height) == pixels.height;
+  if (!is_whole) return with_fault(fault_of(format, bytes));
+  pixels.channels = static_cast<std::size_t>(channels);
+  pixels.has_alpha = channels % 2 == 0 && alpha_means_something(format, picture);
+  return pixels;
+}
+
+// IEC 61966-2-1.
+double linear_of_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
 
 Coverage coverage_by(const AlphaColours& picture, const std::function<double(double)>& covered) {
   // Pixels are counted and divided by once: all of them are a share of 1, without rounding.
@@ -222,7 +391,7 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
   colours.faults = std::move(read.faults);
   const auto& pictures = read.bytes;
   if (pictures.empty()) return colours;
-  // What a child process finds comes back as a scene: a material for each picture, and a group for each fault.
+  // The result of the child process comes back as a scene: a material for each picture, and a group for each fault.
   const std::size_t most = texels_of_one_of(pictures.size());
   const auto decode = [&] {
     Scene scene;
@@ -254,6 +423,61 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
     for (const auto& [file, bytes] : pictures) colours.faults.emplace(file, "cannot be decoded");
   }
   return colours;
+}
+
+std::array<Spectrum, 3> primaries_times(const Spectrum& factor) {
+  return {rgb(factor[0], 0, 0), rgb(0, factor[1], 0), rgb(0, 0, factor[2])};
+}
+
+std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const Eigen::Vector2d> places,
+                               std::uint32_t line) {
+  if (!(area_vector(corners).norm() > 0)) return no_texture_map;
+  const bool known = places.size() == corners.size() && std::all_of(places.begin(), places.end(), [](const auto& at) {
+                       return at.allFinite() && at.cwiseAbs().maxCoeff() <= 1e9;  // farther away a texel is too small
+                     });
+  const std::optional<TextureMap> map = known ? map_of(corners, places) : std::nullopt;
+  if (!map) {
+    count(without_, line);
+    return no_texture_map;
+  }
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    if ((map->linear * corners[k] + map->offset - places[k]).norm() <= 1e-3) continue;  // six digits leave less open
+    count(bent_, line);
+    break;
+  }
+  maps_.push_back(*map);
+  return static_cast<std::uint32_t>(maps_.size() - 1);
+}
+
+std::uint32_t MappedFaces::add(std::span<const Point> vertices, std::span<const std::uint32_t> corners,
+                               std::uint32_t first, std::span<const Eigen::Vector2d> places) {
+  std::vector<Point> points;
+  std::vector<Eigen::Vector2d> in_picture;
+  for (const std::uint32_t corner : corners) {
+    points.push_back(vertices[corner]);
+    if (corner - first < places.size()) in_picture.push_back(places[corner - first]);
+  }
+  return add(points, in_picture, 0);
+}
+
+void MappedFaces::count(Faces& faces, std::uint32_t line) {
+  if (faces.count++ == 0) faces.first_line = line;
+}
+
+std::string MappedFaces::sentence(const Faces& faces, const std::string& what) const {
+  const std::string first = faces.first_line > 0 ? " (first at " + at_line(file_, faces.first_line) + ")" : "";
+  return what + ": " + std::to_string(faces.count) + first;
+}
+
+Diagnostics MappedFaces::notes() const {
+  Diagnostics notes;
+  if (without_.count > 0)
+    notes.push_back({DiagnosticCode::simplified_picture,
+                     sentence(without_, "faces whose corners have no good place in their picture, whose mean counts")});
+  if (bent_.count > 0)
+    notes.push_back({DiagnosticCode::simplified_picture,
+                     sentence(bent_, "faces over which a picture is bent, which is taken as straight")});
+  return notes;
 }
 
 }  // namespace patchlight

@@ -7,11 +7,8 @@
 #include "files/sha256.h"
 #include "input/material_settings.h"
 #include "input/materials.h"
-#include "input/merge_scenes.h"
 #include "input/read_model.h"
 #include "input/scene_lights.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
 #include "input/text.h"
 #include "input/toml/scene_file.h"
 #include "input/toml/toml_sensors.h"
@@ -100,7 +97,7 @@ Scene with_bands(Scene scene, const BandsAsked& asked) {
   return scene;
 }
 
-// The scene with its vertices moved, in metres. A mirrored polygon is walked the other way round, so that its front
+// The scene with its vertices moved, in meters. A mirrored polygon is walked the other way round, so that its front
 // stays the front.
 Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   for (Point& vertex : scene.vertices) vertex = placement * vertex;
@@ -136,12 +133,9 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   return scene;
 }
 
-// What is seen of the ground of most places.
-constexpr double usual_ground = 0.2;
-
 Spectrum irradiance_for(double illuminance) { return Spectrum::Constant(1, illuminance / luminous_efficacy); }
 
-// What cannot be together, or is missing.
+// Refuses settings that exclude each other, or lack another one.
 void require_consistent(const DaylightSetting& setting) {
   if (setting.weather && (setting.sky || setting.sun))
     throw InputError("read.daylight.weather", std::string("cannot be used with ") +
@@ -196,7 +190,7 @@ LightEntries lights_of(const DaylightSetting& setting, const std::filesystem::pa
   }
   if (setting.sun) lights.sun = sun_entry(setting);
   if (setting.sky) lights.sky = sky_entry(setting);
-  if (setting.sky || setting.weather) lights.ground_reflectance = setting.ground_reflectance.value_or(usual_ground);
+  if (setting.sky || setting.weather) lights.ground_reflectance = setting.ground_reflectance.value_or(0.2);
   return lights;
 }
 
@@ -283,7 +277,7 @@ FileModel read_entry(const ModelEntry& model, const std::filesystem::path& confi
   return read;
 }
 
-// What a scene file says besides its models, which make up the scene.
+// The scene of a scene file's models, with the rest of that file.
 Scene with_scene_file(Scene scene, const SceneFile& file) {
   if (scene.files.empty()) scene.files = {scene.file};
   scene.file = file.file;
@@ -337,7 +331,7 @@ bool asks_for_new_light(const ReadOptions& options) {
          });
 }
 
-// Without what is smaller than is asked for, and with coplanar neighbours as one.
+// Without details below the size that is asked for, and with coplanar neighbors as one.
 Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
   double detail = options.detail;
   bool keep = options.keep_faces;
@@ -413,7 +407,7 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
     modifiers = std::move(model.modifiers);
   };
   for (const std::filesystem::path& file : files) {
-    // Who may read one folder only is told of no other.
+    // A user who may read one folder only learns the names of no other.
     require_file(file, file.string(), options.confine.empty());
     const std::string format = options.format.empty() ? format_of(file) : options.format;
     if (format == "toml") {

@@ -1,5 +1,6 @@
 #include "input/round_shapes.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -63,9 +64,9 @@ FacetedShape unit_sphere() {
   return shape;
 }
 
-// By what the radii of a truncated cone of n sides have to be larger for its area: with the slant height of a side,
-// sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that, which is
-// to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
+// The factor by which the radii of a truncated cone of n sides have to be larger for its area: with the slant height of
+// a side, sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that,
+// which is to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
 double cone_factor(double height, double difference) {
   const double sides = round_sides * std::sin(step / 2) / std::numbers::pi;
   const double inclined = std::pow(difference * std::cos(step / 2), 2);
@@ -75,7 +76,8 @@ double cone_factor(double height, double difference) {
   return std::sqrt(2 * target / (h2 + std::sqrt(h2 * h2 + 4 * inclined * target)));
 }
 
-// By what the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2 = pi.
+// The factor by which the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2
+// = pi.
 double disk_factor() { return std::sqrt(2 * std::numbers::pi / (round_sides * std::sin(step))); }
 
 // Adds a circle of corners, or one point for a radius of 0, and returns the place of its first.
@@ -84,6 +86,17 @@ std::uint32_t add_circle(FacetedShape& shape, const Point& centre, const Eigen::
   const std::uint32_t corners = radius == 0 ? 1 : round_sides;
   for (std::uint32_t k = 0; k < corners; ++k) shape.points.push_back(centre + radius * (frame * on_circle(k)));
   return first;
+}
+
+// Cosine and sine of an angle in degrees, exact for quarter turns.
+std::array<double, 2> cosine_and_sine(double degrees) {
+  const double turn = std::remainder(degrees, 360);
+  if (turn == 0) return {1, 0};
+  if (turn == 90) return {0, 1};
+  if (turn == -90) return {0, -1};
+  if (std::abs(turn) == 180) return {-1, 0};
+  const double angle = turn * std::numbers::pi / 180;
+  return {std::cos(angle), std::sin(angle)};
 }
 
 }  // namespace
@@ -122,6 +135,14 @@ FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inne
   for (std::uint32_t k = 0; k < round_sides; ++k) disk.push_back(far + k);
   shape.faces.push_back(std::move(disk));
   return shape;
+}
+
+// R = c I + s [k]_x + (1 - c) k k^T: Rodrigues' formula.
+Eigen::Matrix3d turned_about(const Vector& axis, double degrees) {
+  const auto [c, s] = cosine_and_sine(degrees);
+  Eigen::Matrix3d cross;
+  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return c * Eigen::Matrix3d::Identity() + s * cross + (1 - c) * axis * axis.transpose();
 }
 
 }  // namespace patchlight

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,20 @@ struct FacetedShape {
   std::vector<Point> points;
   std::vector<std::vector<std::uint32_t>> faces;  ///< places of their corners in `points`
 };
+
+/// The scene with the faces of a shape, placed by `placed`, as polygons like this one; turned over if `is_turned`.
+template <class Placed>
+Scene with_shape(Scene scene, const FacetedShape& shape, const Placed& placed, bool is_turned, Polygon polygon) {
+  const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+  for (const Point& point : shape.points) scene.vertices.push_back(placed(point));
+  for (const std::vector<std::uint32_t>& face : shape.faces) {
+    polygon.corners = face;
+    for (std::uint32_t& corner : polygon.corners) corner += first;
+    if (is_turned) std::reverse(polygon.corners.begin(), polygon.corners.end());
+    scene.polygons.push_back(polygon);
+  }
+  return scene;
+}
 
 /// How many sides a round surface has around its axis.
 inline constexpr std::uint32_t round_sides = 24;
@@ -27,5 +42,8 @@ FacetedShape faceted_cone(const Point& a, const Point& b, double radius_a, doubl
 /// A disk, or the ring between two circles, across `normal`, to which its front looks. The radii are larger by so much
 /// that the area is pi (r_outer^2 - r_inner^2).
 FacetedShape faceted_ring(const Point& centre, const Vector& normal, double inner, double outer);
+
+/// The rotation about a unit vector, anticlockwise seen from its tip; exact for quarter turns about an axis.
+Eigen::Matrix3d turned_about(const Vector& axis, double degrees);
 
 }  // namespace patchlight

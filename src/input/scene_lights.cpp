@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "base/tolerances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,7 @@ Spectrum spread(const Spectrum& spectrum, Eigen::Index bands) {
 // The part of a direction at right angles to a unit vector, made unit; zero where it points along it.
 Vector across(const Vector& direction, const Vector& axis) {
   const Vector part = direction - direction.dot(axis) * axis;
-  constexpr double along = 1e-6;
-  return part.norm() > along ? part.normalized() : Vector(Vector::Zero());
+  return part.norm() > tolerance_of_coordinates ? part.normalized() : Vector(Vector::Zero());
 }
 
 // The default: that of the model file, else y where z is up, -z where y is.
@@ -85,14 +85,14 @@ Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Inde
   return daylight;
 }
 
-// Of the colour temperatures that are stated.
+// Of the color temperatures that are stated.
 Daylight with_spectra(Daylight daylight, const LightEntries& lights) {
   if (daylight.sun && lights.sun) daylight.sun->spectrum = lights.sun->spectrum;
   if (daylight.sky && lights.sky) daylight.sky->spectrum = lights.sky->spectrum;
   return daylight;
 }
 
-// What falls on open level ground.
+// The irradiance of open level ground.
 Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
   Spectrum irradiance = Spectrum::Zero(bands);
   if (daylight.sky) irradiance += daylight.sky->horizontal_irradiance;

@@ -2,7 +2,7 @@
 
 #include "patchlight/scene/scene.h"
 
-#include "input/tables/read_epw.h"
+#include "input/tables/read_tables.h"
 #include "light/solar_position.h"
 
 #include <memory>

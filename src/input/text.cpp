@@ -15,16 +15,14 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
-// What a pipe may bring: more than any model that can be solved, and less than what ends the machine.
-constexpr std::size_t most_bytes_of_stream = std::size_t{1} << 30U;
-
-// Everything up to the end. `what` is for messages.
+// Everything up to the end, at most 1 GiB: more than any model that can be solved, and less than the memory of a
+// machine. `what` is for messages.
 std::string read_to_end(std::istream& stream, const std::string& where, const std::string& what) {
   std::string text;
   std::vector<char> block(1U << 16U);
   while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-    if (text.size() <= most_bytes_of_stream) continue;
+    if (text.size() <= std::size_t{1} << 30U) continue;
     throw InputError(where, what + " is longer than 1 GiB; expected a file of a sensible length");
   }
   if (stream.bad()) throw InputError(where, what + " could not be read to its end");
@@ -132,6 +130,17 @@ std::optional<double> finite_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::vector<std::string_view> between_commas(std::string_view text) {
+  std::vector<std::string_view> parts;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
 }
 
 std::string listed(std::span<const std::string> names) {

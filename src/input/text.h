@@ -1,11 +1,14 @@
 #pragma once
 
+#include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace patchlight {
@@ -37,7 +40,7 @@ std::vector<std::string_view> words(std::string_view line);
 /// The words before the first one that begins with #.
 std::vector<std::string_view> words_before_comment(std::string_view line);
 
-/// What follows the first word, without spaces and tabs around it.
+/// The line behind its first word, without spaces and tabs around it.
 std::string_view after_first_word(std::string_view line);
 
 /// The line without spaces and tabs around it.
@@ -46,7 +49,39 @@ std::string_view trimmed(std::string_view line);
 /// The number that the whole word spells; nothing when it is not a finite decimal number.
 std::optional<double> finite_number(std::string_view word);
 
+/// The whole number that the whole word spells; nothing when it is none.
+template <class Number>
+std::optional<Number> whole_number_in(std::string_view word) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (word.empty() || error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+/// The parts of a text between commas, at least one.
+std::vector<std::string_view> between_commas(std::string_view text);
+
 /// "a, b, c".
 std::string listed(std::span<const std::string> names);
+
+/// "room.obj:12".
+inline std::string at_line(const std::filesystem::path& file, std::uint32_t line) {
+  return file.string() + ":" + std::to_string(line);
+}
+
+/// Limits of one model and all files that it names: a small file can ask for a great deal of work. Readers refuse a
+/// file that exceeds one of these with an InputError.
+namespace reading_limits {
+
+inline constexpr std::size_t polygons = 10'000'000;    ///< copies included; a million take about a gigabyte to solve
+inline constexpr std::size_t copies = 1'000'000;       ///< objects visited within instances, with or without faces
+inline constexpr std::size_t files = 200'000;          ///< files read, copies included
+inline constexpr std::size_t nesting = 64;             ///< objects, tables or files within others: parsers recurse
+inline constexpr std::size_t values = 1'000'000;       ///< values of a scene file, which take 700 bytes each
+inline constexpr std::size_t key_length = 200;         ///< characters of a key of a scene file, kept with each value
+inline constexpr std::size_t variable_length = 4096;   ///< characters of a variable, as of the longest file name
+inline constexpr std::size_t text_length = 1'000'000;  ///< characters of a text with its variables
+
+}  // namespace reading_limits
 
 }  // namespace patchlight

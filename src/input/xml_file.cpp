@@ -2,7 +2,6 @@
 
 #include "patchlight/base/error.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -27,10 +26,9 @@ void append_utf8(std::string& text, std::uint32_t code) {
   add(0x80U | (code & 0x3FU));
 }
 
-// RFC 2781: two of 0xD800 to 0xDBFF and 0xDC00 to 0xDFFF are one character. What is no pair becomes the replacement
-// character.
+// RFC 2781: two of 0xD800 to 0xDBFF and 0xDC00 to 0xDFFF are one character. Halves without a pair become the
+// replacement character.
 std::string from_utf16(std::string_view bytes, bool little_endian) {
-  constexpr std::uint32_t replacement = 0xFFFD;
   const auto unit = [&](std::size_t k) {
     const auto first = static_cast<unsigned char>(bytes[k]);
     const auto second = static_cast<unsigned char>(bytes[k + 1]);
@@ -46,7 +44,7 @@ std::string from_utf16(std::string_view bytes, bool little_endian) {
       code = 0x10000 + ((code - 0xD800) << 10U) + (unit(k + 2) - 0xDC00);
       k += 2;
     }
-    append_utf8(text, is_half && !is_pair ? replacement : code);
+    append_utf8(text, is_half && !is_pair ? 0xFFFD : code);
   }
   return text;
 }

@@ -3,6 +3,8 @@
 #include "patchlight/base/field.h"
 #include "patchlight/base/geometry.h"
 
+#include <array>
+#include <cstdint>
 #include <pybind11/numpy.h>
 #include <vector>
 
@@ -23,6 +25,13 @@ inline pybind11::array array_over(const Field& field, pybind11::handle owner) {
 inline pybind11::array array_over(const Eigen::VectorXd& values, pybind11::handle owner) {
   return array_over(values.data(), {values.size()}, owner);
 }
+
+/// The corners of patches as rows of four, which corners_text describes.
+inline pybind11::array array_over(const std::vector<std::array<std::uint32_t, 4>>& corners, pybind11::handle owner) {
+  return array_over(corners.empty() ? nullptr : corners.front().data(),
+                    {static_cast<pybind11::ssize_t>(corners.size()), 4}, owner);
+}
+inline constexpr const char* corners_text = "indices of vertices, patches x 4; a triangle repeats its last";
 
 /// Points as rows of three.
 inline pybind11::array array_over(const std::vector<Point>& points, pybind11::handle owner) {

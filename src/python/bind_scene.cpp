@@ -52,7 +52,7 @@ void bind_spectrum(py::class_<Material>& type, const char* name, Spectrum Materi
       name, [member](const Material& material) { return numbers_of(material.*member); },
       [member](Material& material, const py::object& numbers) {
         material.*member = spectrum_of(numbers, material.reflectance.size());
-        // What is stated takes the place of a picture, as with --set.
+        // Stated values replace a picture, as with --set.
         if (member != &Material::exitance) material.texture.reset();
       },
       text);

@@ -1,12 +1,13 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_result.h"
+#include "patchlight/simulate.h"
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"
 
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "cli/arguments.h"
-#include "cli/picture.h"
+#include "cli/render.h"
 #include "cli/summary.h"
 #include "light/photometry.h"
 #include "output/report/report_json.h"
@@ -14,7 +15,6 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/interrupt_flag.h"
-#include "python/solved_scene.h"
 
 #include <memory>
 #include <pybind11/stl.h>
@@ -23,6 +23,15 @@ namespace patchlight {
 namespace {
 
 namespace py = pybind11;
+
+// A solved scene, with its request.
+struct SolvedScene {
+  std::shared_ptr<const Scene> scene;
+  Request request;
+  Simulation simulation;
+  std::string command_line;
+  std::vector<std::string> changes;  // see Provenance
+};
 
 using SolvedPointer = std::shared_ptr<SolvedScene>;
 
@@ -75,7 +84,7 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
   const InterruptFlag flag;
   const Observer observer = InterruptFlag::observer(progress);
   auto result = std::make_shared<SolvedScene>();
-  // What is changed of the scene later does not change this.
+  // Later changes of the scene do not change this.
   result->scene = std::make_shared<const Scene>(*scene);
   check(*result->scene);
   result->request = arguments.request;
@@ -197,51 +206,43 @@ void bind_simulation(py::module_& module) {
   py::class_<SolvedScene, SolvedPointer> type(
       module, "Simulation",
       "A solved scene. Arrays have a row for each patch; they are the solver's own memory, read only.");
-  const auto add = [&](const char* name, auto of, const char* text) {
-    type.def_property_readonly(
-        name, [of](const py::object& self) { return of(self.cast<SolvedPointer>()->simulation, self); }, text);
-  };
-  using Self = const py::object&;
   using Run = const Simulation&;
+  const auto add = [&](const char* name, const char* text, auto of) {
+    const auto get = [of](const py::object& self) {
+      return array_over(of(self.cast<SolvedPointer>()->simulation), self);
+    };
+    type.def_property_readonly(name, get, text);
+  };
   add(
-      "irradiance", [](Run run, Self self) { return array_over(run.solution.irradiance, self); },
-      "H, W/m^2, patches x bands");
+      "irradiance", "H, W/m^2, patches x bands", [](Run run) -> auto& { return run.solution.irradiance; });
   add(
-      "radiosity", [](Run run, Self self) { return array_over(run.solution.radiosity, self); },
-      "B, W/m^2, patches x bands");
+      "radiosity", "B, W/m^2, patches x bands", [](Run run) -> auto& { return run.solution.radiosity; });
   add(
-      "direct_irradiance", [](Run run, Self self) { return array_over(run.solution.direct_irradiance, self); },
-      "the part of H straight from lamps, W/m^2");
+      "direct_irradiance", "the part of H straight from lamps, W/m^2",
+      [](Run run) -> auto& { return run.solution.direct_irradiance; });
   add(
-      "exitance", [](Run run, Self self) { return array_over(run.problem.exitance, self); },
-      "E, W/m^2, patches x bands");
+      "exitance", "E, W/m^2, patches x bands", [](Run run) -> auto& { return run.problem.exitance; });
   add(
-      "reflectance", [](Run run, Self self) { return array_over(run.problem.scattering.reflectance, self); },
-      "rho, patches x bands");
+      "reflectance", "rho, patches x bands", [](Run run) -> auto& { return run.problem.scattering.reflectance; });
   add(
-      "area", [](Run run, Self self) { return array_over(run.problem.area, self); }, "m^2");
+      "area", "m^2", [](Run run) -> auto& { return run.problem.area; });
   add(
-      "vertices", [](Run run, Self self) { return array_over(run.mesh.vertices, self); }, "metres, vertices x 3");
+      "vertices", "metres, vertices x 3", [](Run run) -> auto& { return run.mesh.vertices; });
   add(
-      "centroid", [](Run run, Self self) { return array_over(run.mesh.centroid, self); }, "metres, patches x 3");
+      "centroid", "metres, patches x 3", [](Run run) -> auto& { return run.mesh.centroid; });
   add(
-      "normal", [](Run run, Self self) { return array_over(run.mesh.normal, self); }, "unit, patches x 3");
+      "normal", "unit, patches x 3", [](Run run) -> auto& { return run.mesh.normal; });
   add(
-      "corners",
-      [](Run run, Self self) {
-        return array_over(run.mesh.corners.front().data(), {static_cast<py::ssize_t>(run.mesh.corners.size()), 4},
-                          self);
-      },
-      "indices of vertices, patches x 4; a triangle repeats its last");
+      "corners", corners_text, [](Run run) -> auto& { return run.mesh.corners; });
   add(
-      "material", [](Run run, Self self) { return array_over(run.mesh.material, self); }, "index into Scene.materials");
+      "material", "index into Scene.materials", [](Run run) -> auto& { return run.mesh.material; });
   add(
-      "polygon", [](Run run, Self self) { return array_over(run.mesh.polygon, self); },
-      "index into the scene's polygons");
-  add(
+      "polygon", "index into the scene's polygons", [](Run run) -> auto& { return run.mesh.polygon; });
+  type.def_property_readonly(
       "error",
-      [](Run run, Self) -> py::object {
-        return run.error_bars ? py::object(array_of(run.error_bars->total())) : py::none();
+      [](const SolvedScene& self) -> py::object {
+        const auto& bars = self.simulation.error_bars;
+        return bars ? py::object(array_of(bars->total())) : py::none();
       },
       "error bars of H, W/m^2, patches x bands; None without error_bars");
   type.def_property_readonly(

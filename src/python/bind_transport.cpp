@@ -65,7 +65,7 @@ TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, co
   FormFactors found = find_form_factors(*scene, raw, observer);
   TransportProblem result{.mesh = found.mesh, .problem = {}, .plan = {}, .world = nullptr, .transport = nullptr};
 
-  // 2. What a run makes of materials and lamps with them
+  // 2. The materials and lamps of a run with them
   const SolveWith take_problem = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                      const SolverOptions&, const Observer&) {
     result.problem = problem;
@@ -180,40 +180,30 @@ py::list history_of(const Solution& solution) {
 
 template <class Owner>
 void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
-  const auto add = [&](const char* name, auto of, const char* text) {
-    type.def_property_readonly(
-        name, [of](const py::object& self) { return of(*self.cast<std::shared_ptr<Owner>>(), self); }, text);
+  using Self = const Owner&;
+  const auto add = [&](const char* name, const char* text, auto of) {
+    const auto get = [of](const py::object& self) {
+      return array_over(of(*self.cast<std::shared_ptr<Owner>>()), self);
+    };
+    type.def_property_readonly(name, get, text);
   };
   add(
-      "vertices", [](const Owner& o, const py::object& self) { return array_over(o.mesh.vertices, self); },
-      "metres, vertices x 3");
+      "vertices", "metres, vertices x 3", [](Self o) -> auto& { return o.mesh.vertices; });
   add(
-      "corners",
-      [](const Owner& o, const py::object& self) {
-        const auto& corners = o.mesh.corners;
-        return array_over(corners.empty() ? nullptr : corners.front().data(),
-                          {static_cast<py::ssize_t>(corners.size()), 4}, self);
-      },
-      "indices of vertices, patches x 4; a triangle repeats its last");
+      "corners", corners_text, [](Self o) -> auto& { return o.mesh.corners; });
   add(
-      "material", [](const Owner& o, const py::object& self) { return array_over(o.mesh.material, self); },
-      "index into Scene.materials");
+      "material", "index into Scene.materials", [](Self o) -> auto& { return o.mesh.material; });
   add(
-      "centroid", [](const Owner& o, const py::object& self) { return array_over(o.mesh.centroid, self); },
-      "metres, patches x 3");
+      "centroid", "metres, patches x 3", [](Self o) -> auto& { return o.mesh.centroid; });
   add(
-      "area", [](const Owner& o, const py::object& self) { return array_over(o.problem.area, self); }, "exposed, m^2");
+      "area", "exposed, m^2", [](Self o) -> auto& { return o.problem.area; });
   add(
-      "exitance", [](const Owner& o, const py::object& self) { return array_over(o.problem.exitance, self); },
-      "E, W/m^2, patches x bands");
+      "exitance", "E, W/m^2, patches x bands", [](Self o) -> auto& { return o.problem.exitance; });
   add(
-      "reflectance",
-      [](const Owner& o, const py::object& self) { return array_over(o.problem.scattering.reflectance, self); },
-      "rho, patches x bands");
+      "reflectance", "rho, patches x bands", [](Self o) -> auto& { return o.problem.scattering.reflectance; });
   add(
-      "direct_irradiance",
-      [](const Owner& o, const py::object& self) { return array_over(o.problem.direct_irradiance, self); },
-      "H_direct by luminaires, sun and sky, W/m^2; empty where there are none");
+      "direct_irradiance", "H_direct by luminaires, sun and sky, W/m^2; empty where there are none",
+      [](Self o) -> auto& { return o.problem.direct_irradiance; });
 }
 
 }  // namespace

@@ -4,11 +4,9 @@
 
 namespace patchlight {
 
-/// Exceptions with the words of the library's.
-void bind_errors(pybind11::module_& module);
 /// Scene and materials; the options of the tool.
 void bind_scene(pybind11::module_& module);
-/// solve(), and what is seen of a solution.
+/// solve(), and the views of a solution.
 void bind_simulation(pybind11::module_& module);
 /// Form factors as an operator, and the solvers.
 void bind_transport(pybind11::module_& module);

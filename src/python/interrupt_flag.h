@@ -28,7 +28,7 @@ class InterruptFlag {
     bool installed_;
   };
 
-  /// Stops the work after Ctrl-C, and tells `progress`, a function of stage and share or None, how it goes on.
+  /// Stops the work after Ctrl-C, and reports to `progress`, a function of stage and share or None.
   static Observer observer(pybind11::object progress);
 
  private:

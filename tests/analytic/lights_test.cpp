@@ -1,7 +1,7 @@
 #include "patchlight/gather/gather.h"
 #include "patchlight/simulate.h"
 
-#include "input/tables/read_ies.h"
+#include "input/tables/read_tables.h"
 #include "light/photometry.h"
 #include "lighting/direct_irradiance.h"
 #include "support/scenes.h"

@@ -37,8 +37,8 @@ struct MaterialSetting {
 /// \throws InputError naming read.settings.
 MaterialSetting parse_material_setting(const std::string& text);
 
-/// Daylight that is asked for beside what the files say; nothing by default. What is measured or known from a weather
-/// file brings the sun's strength with it.
+/// Daylight that is asked for besides that of the files; none by default. Measured values and those of a weather
+/// file bring the strength of the sun with them.
 struct DaylightSetting {
   /// Where the sun stands, degrees.
   struct SunPlace {
@@ -57,7 +57,7 @@ struct DaylightSetting {
   double sky_illuminance = 10'000;                ///< of open level ground by the sky alone, lx
   std::optional<SolarIrradiance> measured;        ///< for a Perez sky; its day of the year is that of `sun`
   std::optional<SunPlace> sun;                    ///< needed by clear and Perez skies
-  double sun_illuminance = 0;                     ///< across its rays, lx; 0: it only tells where the sky is bright
+  double sun_illuminance = 0;                     ///< across its rays, lx; 0: it only states where the sky is bright
   std::optional<WeatherFile> weather;             ///< instead of sky and sun
   std::optional<double> ground_reflectance = {};  ///< 0.2 if not given, where there is a sky
 };
@@ -66,7 +66,7 @@ struct DaylightSetting {
 struct BandsAsked {
   bool rgb = false;                   ///< linear RGB, whatever has a spectrum
   std::vector<double> edges_nm = {};  ///< of bands, growing; empty and not rgb: RGB where nothing has a spectrum, else
-                                      ///< as many as keep colours within color_error
+                                      ///< as many as keep colors within color_error
   double color_error = 1;             ///< CIE dE00
 };
 
@@ -79,8 +79,8 @@ struct ReadOptions {
   std::filesystem::path confine = {};       ///< a folder outside of which nothing is read; if empty, any file may be
   std::vector<std::string> only = {};       ///< objects, groups or materials, nothing else takes part; empty: all
   std::vector<std::string> leave_out = {};  ///< those that do not; both names, or patterns with * and ?
-  double detail = 0;        ///< metres: what is smaller is left out or taken as a box, see with_less_detail()
-  bool keep_faces = false;  ///< coplanar neighbours of one object and material stay apart, see
+  double detail = 0;        ///< meters: what is smaller is left out or taken as a box, see with_less_detail()
+  bool keep_faces = false;  ///< coplanar neighbors of one object and material stay apart, see
                             ///< with_joined_faces()
   DaylightSetting daylight = {};
   std::optional<double> maintenance_factor = {};  ///< above 0, up to 1: the share of their light when new that lamps
@@ -94,7 +94,7 @@ std::vector<std::string> readable_formats();
 
 /// Reads a model or a scene file (.toml, which names models, sensors and more); the format follows from the extension,
 /// and "-" stands for the standard input, which is OBJ unless options.format says otherwise. Lengths are converted to
-/// metres, emitted radiance L to exitance = pi L. What is read but not simulated is named in Scene::notes.
+/// meters, emitted radiance L to exitance = pi L. Scene::notes names the parts that are not simulated.
 /// docs/reference/formats/index.md has the details.
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});

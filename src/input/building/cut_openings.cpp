@@ -1,5 +1,7 @@
 #include "input/building/cut_openings.h"
 
+#include "base/tolerances.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -21,7 +24,7 @@ using FlatRing = std::vector<FlatPoint>;
 struct Plane {
   Point origin;
   Vector x, y;
-  double grid = 0;  // metres; the overlay rounds coordinates to multiples of it
+  double grid = 0;  // meters; the overlay rounds coordinates to multiples of it
 
   FlatPoint flat(const Point& point) const { return {x.dot(point - origin), y.dot(point - origin)}; }
   Point lifted(const FlatPoint& point) const { return origin + point.x() * x + point.y() * y; }
@@ -33,7 +36,6 @@ struct Plane {
 };
 
 Plane plane_of(const std::vector<Point>& outline) {
-  constexpr double resolution = 1e-9;  // of the size of the outline: 53 bits hold 1e15 steps
   Box box;
   Vector longest = Vector::Zero();
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -43,7 +45,7 @@ Plane plane_of(const std::vector<Point>& outline) {
   }
   const Vector normal = area_vector(outline).normalized();
   const Vector x = (longest - normal.dot(longest) * normal).normalized();
-  return {outline[0], x, normal.cross(x), resolution * box.diagonal().norm()};
+  return {outline[0], x, normal.cross(x), tolerance_of_shapes * box.diagonal().norm()};
 }
 
 double twice_the_area(const FlatRing& ring) {
@@ -326,10 +328,9 @@ std::vector<HolesInPart> halved(const ShapeCutter& cutter, const Holes& holes, c
 
 // The outlines of polygons without holes that make up the outline without the openings; nothing where GEOS fails. GEOS
 // takes more than linear time, and later passes take the square of the corners of a polygon. The outline is therefore
-// halved until few holes are left in each part.
+// halved until 64 holes are left in each part.
 std::optional<std::vector<FlatRing>> parts_without(const ShapeCutter& cutter, const FlatRing& outline,
                                                    const Holes& holes) {
-  constexpr std::size_t few = 64;
   Eigen::AlignedBox2d box = box_of(outline);
   const FlatPoint margin = FlatPoint::Constant(0.1 * box.diagonal().norm());
   std::vector<HolesInPart> left;
@@ -340,7 +341,7 @@ std::optional<std::vector<FlatRing>> parts_without(const ShapeCutter& cutter, co
     HolesInPart next = std::move(left.back());
     left.pop_back();
     std::vector<HolesInPart> sides;
-    if (next.part && next.holes.size() > few) sides = halved(cutter, holes, next);
+    if (next.part && next.holes.size() > 64) sides = halved(cutter, holes, next);
     if (!sides.empty()) {
       std::move(sides.begin(), sides.end(), std::back_inserter(left));
       continue;
@@ -402,11 +403,10 @@ SnappedOpening snapped(FlatRing ring, const FlatRing& outline, double tolerance)
 }
 
 std::vector<std::vector<Point>> lifted_parts(const std::vector<FlatRing>& parts, const Corners& corners, double grid) {
-  constexpr double narrowest = 10;  // grid steps
   std::vector<std::vector<Point>> lifted;
   for (const FlatRing& part : parts) {
     const double area = twice_the_area(part);
-    if (!(std::abs(area) > narrowest * grid * box_of(part).diagonal().norm())) continue;
+    if (!(std::abs(area) > 10 * grid * box_of(part).diagonal().norm())) continue;
     lifted.push_back(corners.lifted(part));
     if (area < 0) std::reverse(lifted.back().begin(), lifted.back().end());
   }
@@ -444,6 +444,16 @@ CutOutline without_openings(const std::vector<Point>& outline, const std::vector
   if (!parts) return {{outline}, 0, false};
   cut.parts = lifted_parts(*parts, corners, plane.grid);
   return cut;
+}
+
+Scene with_parts(Scene scene, Polygon polygon, const std::vector<std::vector<Point>>& parts) {
+  for (const std::vector<Point>& part : parts) {
+    polygon.corners.resize(part.size());
+    std::iota(polygon.corners.begin(), polygon.corners.end(), static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.insert(scene.vertices.end(), part.begin(), part.end());
+    scene.polygons.push_back(polygon);
+  }
+  return scene;
 }
 
 }  // namespace patchlight

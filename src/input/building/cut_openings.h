@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/base/geometry.h"
+#include "patchlight/scene/scene.h"
 
 #include <cstddef>
 #include <vector>
@@ -14,6 +14,9 @@ struct CutOutline {
   bool is_cut = true;                     ///< false when the outline stays whole because no area can be computed
 };
 
+/// Drawings of buildings are exact to it, meters.
+inline constexpr double drawing_tolerance = 1e-3;
+
 /// The plane outline without its openings. Openings may run in either direction, overlap, touch each other and touch
 /// the outline; they are laid into its plane. A corner within `tolerance` of an edge of the outline is on it. The parts
 /// turn the way of the outline, keep its corners and those of the openings bit by bit, and share their edges. Without
@@ -21,5 +24,8 @@ struct CutOutline {
 /// openings.
 CutOutline without_openings(const std::vector<Point>& outline, const std::vector<std::vector<Point>>& openings,
                             double tolerance);
+
+/// The scene with a polygon like this one for each of the parts, with corners of its own.
+Scene with_parts(Scene scene, Polygon polygon, const std::vector<std::vector<Point>>& parts);
 
 }  // namespace patchlight

@@ -1,5 +1,3 @@
-#include "input/building/read_gbxml.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
@@ -9,8 +7,8 @@
 #include "input/building/cut_openings.h"
 #include "input/left_out.h"
 #include "input/materials.h"
+#include "input/read_model.h"
 #include "input/text.h"
-#include "input/unique_names.h"
 #include "input/xml_file.h"
 
 #include <algorithm>
@@ -30,34 +28,6 @@ struct GbxmlSides {
   Material front;
   std::optional<Material> back;  // where it is another one
 };
-
-// The materials of a building by the kinds of its surfaces and openings.
-class GbxmlMaterials {
- public:
-  explicit GbxmlMaterials(const XmlFile& xml);
-
-  // Of a kind of surface, as InteriorFloor. What lies level has a top, as floors have it, and an underside, as
-  // ceilings; `normal` is that of its front.
-  GbxmlSides surface(const std::string& kind, const Vector& normal) const;
-
-  // Of an opening: a pane where its kind is a window, a skylight or a sliding door, or its windowTypeIdRef names a
-  // type that lets light through; else a door.
-  Material opening(const pugi::xml_node& opening);
-
-  // Names of windows whose type states no visible transmittance.
-  const std::vector<std::string>& assumed() const { return assumed_; }
-
- private:
-  std::map<std::string, pugi::xml_node> window_types_;  // by id
-  std::vector<std::string> assumed_;
-};
-
-// As lighting standards assume them for rooms whose colours are not known.
-constexpr double of_walls = 0.5;
-constexpr double of_floors = 0.2;
-constexpr double of_ceilings = 0.8;
-constexpr double of_shades = 0.35;
-constexpr double of_panes = 0.7;  // transmittance
 
 Material matt(const std::string& name, double reflectance) {
   return {name, rgb(reflectance, reflectance, reflectance), rgb(0, 0, 0)};
@@ -85,38 +55,50 @@ std::optional<double> visible_transmittance(const pugi::xml_node& type) {
   return std::nullopt;
 }
 
-GbxmlMaterials::GbxmlMaterials(const XmlFile& xml) {
-  for (const pugi::xml_node& type : xml.document.document_element().children("WindowType"))
-    window_types_.emplace(type.attribute("id").value(), type);
-}
+// The materials of a building by the kinds of its surfaces and openings. Reflectances are those that lighting standards
+// assume for rooms whose colors are not known.
+class GbxmlMaterials {
+ public:
+  explicit GbxmlMaterials(const XmlFile& xml) {
+    for (const pugi::xml_node& type : xml.document.document_element().children("WindowType"))
+      window_types_.emplace(type.attribute("id").value(), type);
+  }
 
-GbxmlSides GbxmlMaterials::surface(const std::string& kind, const Vector& normal) const {
-  if (!is_level(kind)) return {matt(kind, kind == "Shade" ? of_shades : of_walls), std::nullopt};
-  const Material top = matt(kind + "-top", of_floors);
-  const Material underside = matt(kind + "-underside", of_ceilings);
-  return normal.z() >= 0 ? GbxmlSides{top, underside} : GbxmlSides{underside, top};
-}
+  // Of a kind of surface, e.g. InteriorFloor. Level ones have a top, as floors have it, and an underside, as
+  // ceilings; `normal` is that of its front.
+  static GbxmlSides surface(const std::string& kind, const Vector& normal) {
+    if (!is_level(kind)) return {matt(kind, kind == "Shade" ? 0.35 : of_walls), std::nullopt};
+    const Material top = matt(kind + "-top", 0.2);
+    const Material underside = matt(kind + "-underside", 0.8);
+    return normal.z() >= 0 ? GbxmlSides{top, underside} : GbxmlSides{underside, top};
+  }
 
-Material GbxmlMaterials::opening(const pugi::xml_node& opening) {
-  const std::string kind = opening.attribute("openingType").value();
-  const auto type = window_types_.find(opening.attribute("windowTypeIdRef").value());
-  const bool has_type = type != window_types_.end();
-  const std::optional<double> stated = has_type ? visible_transmittance(type->second) : std::nullopt;
-  if (!is_glazed(kind) && !(stated && *stated > 0)) return matt(kind.empty() ? "Opening" : kind, of_walls);
-  const std::string named = has_type ? std::string(trimmed(type->second.child_value("Name"))) : std::string();
-  Material pane = matt(named.empty() ? kind : named, 0);
-  const double share = stated.value_or(of_panes);
-  pane.transmittance = rgb(share, share, share);
-  if (!stated && std::find(assumed_.begin(), assumed_.end(), pane.name) == assumed_.end())
-    assumed_.push_back(pane.name);
-  return pane;
-}
+  // Of an opening: a pane where its kind is a window, a skylight or a sliding door, or its windowTypeIdRef names a
+  // type that lets light through; else a door.
+  Material opening(const pugi::xml_node& opening) {
+    const std::string kind = opening.attribute("openingType").value();
+    const auto type = window_types_.find(opening.attribute("windowTypeIdRef").value());
+    const bool has_type = type != window_types_.end();
+    const std::optional<double> stated = has_type ? visible_transmittance(type->second) : std::nullopt;
+    if (!is_glazed(kind) && !(stated && *stated > 0)) return matt(kind.empty() ? "Opening" : kind, of_walls);
+    const std::string named = has_type ? std::string(trimmed(type->second.child_value("Name"))) : std::string();
+    Material pane = matt(named.empty() ? kind : named, 0);
+    const double share = stated.value_or(0.7);
+    pane.transmittance = rgb(share, share, share);
+    if (!stated && std::find(assumed_.begin(), assumed_.end(), pane.name) == assumed_.end())
+      assumed_.push_back(pane.name);
+    return pane;
+  }
 
-// The reflectances that are taken, as a sentence.
-std::string usual_reflectances() {
-  return "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
-         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as InteriorWall.reflectance=0.7";
-}
+  // Names of windows whose type states no visible transmittance.
+  const std::vector<std::string>& assumed() const { return assumed_; }
+
+ private:
+  static constexpr double of_walls = 0.5;
+
+  std::map<std::string, pugi::xml_node> window_types_;  // by id
+  std::vector<std::string> assumed_;
+};
 
 double metres_of(const std::string& unit, const std::string& where) {
   static const std::map<std::string, double> metres = {
@@ -143,7 +125,11 @@ class GbxmlReader {
       for (const pugi::xml_node& surface : campus.children("Surface")) add_surface(surface);
       for (const pugi::xml_node& building : campus.children("Building")) add_rooms(building);
     }
-    scene_.diagnostics.push_back({DiagnosticCode::assumed_material, usual_reflectances()});
+    scene_.diagnostics.push_back(
+        {DiagnosticCode::assumed_material,
+         "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
+         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as "
+         "InteriorWall.reflectance=0.7"});
     if (turned_ != 0)
       scene_.diagnostics.push_back(
           {DiagnosticCode::north_of_file,
@@ -152,8 +138,7 @@ class GbxmlReader {
         merged({std::move(scene_.diagnostics),
                 note_on(DiagnosticCode::assumed_material,
                         "windows without a visible transmittance in their type have 0.7", materials_.assumed())});
-    scene_ = left_out_.on(std::move(scene_));
-    return std::move(scene_);
+    return left_out_.on(std::move(scene_));
   }
 
  private:
@@ -200,10 +185,10 @@ class GbxmlReader {
     }
     if (kind == "Air") return left_out_.add("surfaces of air are open, left out", name);
     if (outline.size() < 3) return left_out_.lose("surfaces without a PolyLoop of three corners, left out", name);
-    const CutOutline cut = without_openings(outline, openings, tolerance());
+    const CutOutline cut = without_openings(outline, openings, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("surfaces with openings that reach beyond them, cut within the surface", name);
     if (!cut.is_cut) left_out_.add("surfaces without a clear area, whose openings are not cut", name);
-    const GbxmlSides sides = materials_.surface(kind.empty() ? "Surface" : kind, area_vector(outline));
+    const GbxmlSides sides = GbxmlMaterials::surface(kind.empty() ? "Surface" : kind, area_vector(outline));
     if (!cut.parts.empty()) add_polygons(surface, name, cut.parts, sides);
   }
 
@@ -215,9 +200,6 @@ class GbxmlReader {
     add_polygons(opening, name, {outline}, {materials_.opening(opening), std::nullopt});
   }
 
-  // What drawings are exact to, 1 mm.
-  static double tolerance() { return 1e-3; }
-
   void add_polygons(const pugi::xml_node& node, const std::string& name, const std::vector<std::vector<Point>>& parts,
                     const GbxmlSides& sides) {
     Polygon polygon;
@@ -226,14 +208,7 @@ class GbxmlReader {
     polygon.group = static_cast<std::uint32_t>(scene_.groups.size());
     polygon.line = line_of(xml_, node);
     scene_.groups.push_back(name);
-    for (const std::vector<Point>& part : parts) {
-      polygon.corners.clear();
-      for (const Point& corner : part) {
-        polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
-        scene_.vertices.push_back(corner);
-      }
-      scene_.polygons.push_back(polygon);
-    }
+    scene_ = with_parts(std::move(scene_), std::move(polygon), parts);
   }
 
   MaterialIndex index_of(const Material& material) {

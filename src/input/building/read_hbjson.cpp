@@ -1,5 +1,3 @@
-#include "input/building/read_hbjson.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 
@@ -10,6 +8,7 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/radiance/radiance_material.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -26,44 +25,28 @@
 namespace patchlight {
 namespace {
 
-// The modifiers of a honeybee model as materials.
-class HoneybeeModifiers {
- public:
-  // Of a model's "properties"."radiance"; may be null.
-  explicit HoneybeeModifiers(const nlohmann::json& radiance);
+using HbJson = nlohmann::json;
 
-  // The material of a face, opening or shade: its own modifier, that of the modifier set of its room, or honeybee's
-  // generic one. `kind` is one of "floor", "wall", "ceiling", "door", "glass_door", "window", "operable_window",
-  // "skylight", "exterior_shade", "interior_shade", "context"; whether it stands outdoors its boundary condition says.
-  Material material(const nlohmann::json& item, const std::string& set, const std::string& kind);
-
-  // Names of modifiers that cannot be carried and are taken for honeybee's generic ones.
-  const std::vector<std::string>& unknown() const { return unknown_; }
-
- private:
-  const nlohmann::json* modifier(const std::string& identifier) const;
-  std::string of_set(const std::string& set, const std::string& kind, bool outdoors) const;
-
-  const nlohmann::json& radiance_;
-  std::vector<std::string> unknown_;
-};
-
-using HoneybeeJson = nlohmann::json;
-
-double number_in(const HoneybeeJson& item, const std::string& key, double otherwise) {
+double number_in(const HbJson& item, const std::string& key, double otherwise) {
   const auto found = item.find(key);
   return found != item.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
 // "r_reflectance" and so on.
-Spectrum bands_of_key(const HoneybeeJson& item, const std::string& quantity, double otherwise) {
+Spectrum bands_of_key(const HbJson& item, const std::string& quantity, double otherwise) {
   return rgb(number_in(item, "r_" + quantity, otherwise), number_in(item, "g_" + quantity, otherwise),
              number_in(item, "b_" + quantity, otherwise));
 }
 
-std::string text_in(const HoneybeeJson& item, const std::string& key) {
+std::string text_in(const HbJson& item, const std::string& key) {
   const auto found = item.find(key);
   return found != item.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+// The text at a place below the item; empty where there is none.
+std::string text_at(const HbJson& item, const char* place) {
+  const HbJson::json_pointer pointer(place);
+  return item.contains(pointer) && item.at(pointer).is_string() ? item.at(pointer).get<std::string>() : std::string();
 }
 
 // Transmissivity 0.88 of an interior window and 0.64 of others.
@@ -78,18 +61,17 @@ const std::map<std::string, std::pair<double, double>>& generic_values() {
 }
 
 Material generic_material(const std::string& kind) {
-  constexpr double usual = 1.52;
   const auto [reflectance, transmittance] = generic_values().at(kind);
   Material material{"generic_" + kind, rgb(reflectance, reflectance, reflectance), rgb(0, 0, 0)};
   if (transmittance > 0) {
     material.transmittance = rgb(transmittance, transmittance, transmittance);
-    material.index = usual;
+    material.index = 1.52;
   }
   return material;
 }
 
 // As Radiance has them; nothing for kinds that are not known.
-std::optional<Material> material_of(const HoneybeeJson& modifier) {
+std::optional<Material> material_of(const HbJson& modifier) {
   const std::string type = in_lower_case(text_in(modifier, "type"));
   const std::string name = text_in(modifier, "identifier");
   const Spectrum reflectance = bands_of_key(modifier, "reflectance", 0);
@@ -130,11 +112,6 @@ const std::map<std::string, PlaceInSet>& places_in_sets() {
   return places;
 }
 
-bool is_outdoors(const HoneybeeJson& item) {
-  const HoneybeeJson::json_pointer place("/boundary_condition/type");
-  return item.contains(place) && item.at(place) == "Outdoors";
-}
-
 // Where honeybee has one generic modifier for several kinds.
 std::string generic_kind(const std::string& kind, bool outdoors) {
   const bool is_glass = kind == "window" || kind == "operable_window" || kind == "skylight" || kind == "glass_door";
@@ -142,45 +119,50 @@ std::string generic_kind(const std::string& kind, bool outdoors) {
   return kind;
 }
 
-HoneybeeModifiers::HoneybeeModifiers(const nlohmann::json& radiance) : radiance_(radiance) {}
+// The modifiers of a honeybee model as materials.
+class HoneybeeModifiers {
+ public:
+  // Of a model's "properties"."radiance"; may be null.
+  explicit HoneybeeModifiers(const HbJson& radiance) : radiance_(radiance) {}
 
-const nlohmann::json* HoneybeeModifiers::modifier(const std::string& identifier) const {
-  const auto list = radiance_.find("modifiers");
-  if (list == radiance_.end()) return nullptr;
-  for (const HoneybeeJson& one : *list) {
-    if (text_in(one, "identifier") == identifier) return &one;
+  // The material of a face, opening or shade: its own modifier, that of the modifier set of its room, or honeybee's
+  // generic one. `kind` is one of "floor", "wall", "ceiling", "door", "glass_door", "window", "operable_window",
+  // "skylight", "exterior_shade", "interior_shade", "context"; whether it stands outdoors its boundary condition says.
+  Material material(const HbJson& item, const std::string& set, const std::string& kind) {
+    const bool outdoors = text_at(item, "/boundary_condition/type") == "Outdoors";
+    std::string name = text_at(item, "/properties/radiance/modifier");
+    if (name.empty()) name = of_set(set, kind, outdoors);
+    const HbJson* const found = name.empty() ? nullptr : identified("modifiers", name);
+    const std::optional<Material> material = found != nullptr ? material_of(*found) : std::nullopt;
+    if (material) return *material;
+    if (!name.empty() && std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
+    return generic_material(generic_kind(kind, outdoors));
   }
-  return nullptr;
-}
 
-std::string HoneybeeModifiers::of_set(const std::string& set, const std::string& kind, bool outdoors) const {
-  const auto sets = radiance_.find("modifier_sets");
-  const auto place = places_in_sets().find(kind);
-  if (set.empty() || sets == radiance_.end() || place == places_in_sets().end()) return {};
-  for (const HoneybeeJson& one : *sets) {
-    if (text_in(one, "identifier") != set) continue;
-    const auto part = one.find(place->second.part);
-    if (part == one.end() || !part->is_object()) return {};
+  // Names of modifiers that cannot be carried and are taken for honeybee's generic ones.
+  const std::vector<std::string>& unknown() const { return unknown_; }
+
+ private:
+  const HbJson* identified(const char* list, const std::string& identifier) const {
+    const auto all = radiance_.find(list);
+    if (all == radiance_.end()) return nullptr;
+    const auto found = std::find_if(all->begin(), all->end(),
+                                    [&](const HbJson& one) { return text_in(one, "identifier") == identifier; });
+    return found == all->end() ? nullptr : &*found;
+  }
+
+  std::string of_set(const std::string& set, const std::string& kind, bool outdoors) const {
+    const auto place = places_in_sets().find(kind);
+    const HbJson* const found = set.empty() ? nullptr : identified("modifier_sets", set);
+    if (found == nullptr || place == places_in_sets().end()) return {};
+    const auto part = found->find(place->second.part);
+    if (part == found->end() || !part->is_object()) return {};
     return text_in(*part, outdoors ? place->second.outdoors : place->second.other);
   }
-  return {};
-}
 
-Material HoneybeeModifiers::material(const nlohmann::json& item, const std::string& set, const std::string& kind) {
-  const HoneybeeJson::json_pointer own("/properties/radiance/modifier");
-  std::string name = item.contains(own) && item.at(own).is_string() ? item.at(own).get<std::string>() : std::string();
-  const bool outdoors = is_outdoors(item);
-  const std::string generic = generic_kind(kind, outdoors);
-  if (name.empty()) name = of_set(set, kind, outdoors);
-  if (name.empty()) return generic_material(generic);
-  const HoneybeeJson* const found = modifier(name);
-  const std::optional<Material> material = found != nullptr ? material_of(*found) : std::nullopt;
-  if (material) return *material;
-  if (std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
-  return generic_material(generic);
-}
-
-using HbJson = nlohmann::json;
+  const HbJson& radiance_;
+  std::vector<std::string> unknown_;
+};
 
 const std::map<std::string, double>& honeybee_units() {
   static const std::map<std::string, double> units = {
@@ -188,7 +170,7 @@ const std::map<std::string, double>& honeybee_units() {
   return units;
 }
 
-// What an optional key has; null counts as absent.
+// The value of an optional key; null counts as absent.
 template <typename Value>
 Value value_or(const HbJson& item, const char* key, Value otherwise) {
   const auto found = item.find(key);
@@ -202,10 +184,13 @@ const HbJson& list_of(const HbJson& item, const char* key) {
   return found != item.end() && found->is_array() ? *found : none;
 }
 
+Point hb_point(const HbJson& point, double metres) {
+  return metres * Point(point.at(0).get<double>(), point.at(1).get<double>(), point.at(2).get<double>());
+}
+
 std::vector<Point> hb_points(const HbJson& list, double metres) {
   std::vector<Point> points;
-  for (const HbJson& point : list)
-    points.push_back(metres * Point(point.at(0).get<double>(), point.at(1).get<double>(), point.at(2).get<double>()));
+  for (const HbJson& point : list) points.push_back(hb_point(point, metres));
   return points;
 }
 
@@ -268,15 +253,8 @@ class HoneybeeScene {
   }
 
   void add_parts(const std::vector<std::vector<Point>>& parts, const HbJson& item, MaterialIndex material) {
-    const std::uint32_t group = add_group(item);
-    for (const std::vector<Point>& part : parts) {
-      Polygon polygon{.corners = {}, .material = material, .group = group};
-      for (const Point& point : part) {
-        polygon.corners.push_back(static_cast<std::uint32_t>(scene_.vertices.size()));
-        scene_.vertices.push_back(point);
-      }
-      scene_.polygons.push_back(std::move(polygon));
-    }
+    Polygon polygon{.corners = {}, .material = material, .group = add_group(item)};
+    scene_ = with_parts(std::move(scene_), std::move(polygon), parts);
   }
 
   // The outlines of lost objects are empty.
@@ -298,7 +276,7 @@ class HoneybeeScene {
     const std::string name = item.at("identifier").get<std::string>();
     const std::vector<Point> outline = outline_of(item);
     if (outline.empty()) return;
-    const CutOutline cut = without_openings(outline, holes, tolerance);
+    const CutOutline cut = without_openings(outline, holes, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("faces with openings that reach beyond them, cut within the face", name);
     if (!cut.is_cut) left_out_.add("faces without a clear area, whose openings are not cut", name);
     add_parts(cut.parts, item, material);
@@ -353,8 +331,7 @@ class HoneybeeScene {
 
   static const char* kind_of_opening(const HbJson& face, const HbJson& opening, bool is_clear) {
     if (opening.at("type") != "Aperture") return is_clear ? "glass_door" : "door";
-    const HbJson::json_pointer type("/face_type");
-    if (face.contains(type) && face.at(type) == "RoofCeiling") return "skylight";
+    if (text_in(face, "face_type") == "RoofCeiling") return "skylight";
     return value_or(opening, "is_operable", false) ? "operable_window" : "window";
   }
 
@@ -392,9 +369,7 @@ class HoneybeeScene {
   }
 
   void add_room(const HbJson& room) {
-    const HbJson::json_pointer place("/properties/radiance/modifier_set");
-    const std::string set =
-        room.contains(place) && room.at(place).is_string() ? room.at(place).get<std::string>() : std::string();
+    const std::string set = text_at(room, "/properties/radiance/modifier_set");
     NamedRoom body{value_or(room, "display_name", room.at("identifier").get<std::string>()),
                    value_or<std::string>(room, "story", ""),
                    {}};
@@ -412,8 +387,8 @@ class HoneybeeScene {
     group.name = grid.at("identifier").get<std::string>();
     group.file = scene_.file;
     for (const HbJson& sensor : grid.at("sensors")) {
-      const Point at = hb_points(HbJson::array({sensor.at("pos")}), metres_).front();
-      const Vector direction = hb_points(HbJson::array({sensor.at("dir")}), 1).front();
+      const Point at = hb_point(sensor.at("pos"), metres_);
+      const Vector direction = hb_point(sensor.at("dir"), 1);
       if (!(direction.stableNorm() > 0))
         throw InputError(scene_.file + ": " + group.name, "a sensor looks along 0, 0, 0; expected a direction");
       group.sensors.push_back({at, direction.stableNormalized()});
@@ -423,8 +398,8 @@ class HoneybeeScene {
   }
 
   void add_view(const HbJson& view) {
-    const Point eye = hb_points(HbJson::array({view.at("position")}), metres_).front();
-    const Vector way = hb_points(HbJson::array({view.at("direction")}), 1).front();
+    const Point eye = hb_point(view.at("position"), metres_);
+    const Vector way = hb_point(view.at("direction"), 1);
     const double angle = value_or(view, "v_size", 60.0);
     if (!(way.stableNorm() > 0) || !(angle > 0 && angle < 180)) {
       scene_.diagnostics.push_back(
@@ -434,8 +409,6 @@ class HoneybeeScene {
     }
     scene_.cameras.push_back({eye, eye + way.stableNormalized(), angle, view.at("identifier").get<std::string>()});
   }
-
-  static constexpr double tolerance = 1e-3;  // metres; drawings are exact to it
 
   HoneybeeModifiers modifiers_;
   double metres_;

@@ -1,20 +1,20 @@
-#include "input/collada/read_collada.h"
-
 #include "patchlight/base/error.h"
+#include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "files/reason.h"
 #include "files/sha256.h"
-#include "input/collada/assimp_pictures.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
+#include "input/read_model.h"
 #include "input/scene_bytes.h"
-#include "input/stated_panes.h"
 #include "input/text.h"
-#include "input/texture_maps.h"
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -23,6 +23,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 #include <string>
@@ -31,6 +32,53 @@
 
 namespace patchlight {
 namespace {
+
+// The picture of the diffuse color of one of assimp's materials.
+struct AssimpPicture {
+  std::string file;      // beside the model, as it names it
+  unsigned int set = 0;  // of the meshes' coordinates in pictures
+  std::array<Wrap, 2> wrap{};
+};
+
+// By the index of the material.
+using AssimpPictures = std::map<unsigned int, AssimpPicture>;
+
+Wrap wrap_of_mode(aiTextureMapMode mode) {
+  if (mode == aiTextureMapMode_Mirror) return Wrap::mirror;
+  return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp : Wrap::repeat;
+}
+
+std::optional<AssimpPicture> diffuse_picture(const aiMaterial& material, const std::filesystem::path& folder) {
+  aiString name;
+  unsigned int set = 0;
+  std::array<aiTextureMapMode, 3> modes = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &name, nullptr, &set, nullptr, nullptr, modes.data()) !=
+      aiReturn_SUCCESS)
+    return std::nullopt;
+  std::string file = name.C_Str();
+  std::replace(file.begin(), file.end(), '\\', '/');
+  return AssimpPicture{(folder / file).string(), set, {wrap_of_mode(modes[0]), wrap_of_mode(modes[1])}};
+}
+
+AssimpPictures diffuse_pictures(const aiScene& model, const std::filesystem::path& folder) {
+  AssimpPictures pictures;
+  for (unsigned int m = 0; m < model.mNumMeshes; ++m) {
+    const unsigned int material = model.mMeshes[m]->mMaterialIndex;
+    const std::optional<AssimpPicture> picture = diffuse_picture(*model.mMaterials[material], folder);
+    if (picture) pictures.emplace(material, *picture);
+  }
+  return pictures;
+}
+
+std::vector<Eigen::Vector2d> places_in(const AssimpPicture& picture, const aiMesh& mesh) {
+  std::vector<Eigen::Vector2d> places;
+  if (picture.set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !mesh.HasTextureCoords(picture.set)) return places;
+  for (unsigned int v = 0; v < mesh.mNumVertices; ++v) {
+    const aiVector3D& place = mesh.mTextureCoords[picture.set][v];
+    places.emplace_back(place.x, 1.0 - place.y);
+  }
+  return places;
+}
 
 // A pane has the mean of its picture.
 Material painted(Material material, const Spectrum& mean, const std::shared_ptr<const Texture>& texture) {
@@ -41,7 +89,7 @@ Material painted(Material material, const Spectrum& mean, const std::shared_ptr<
   return material;
 }
 
-// Without maps into pictures that are none or have one colour.
+// Without maps into pictures that are none or have one color.
 Scene with_used_maps(Scene scene) {
   std::vector<TextureMap> maps;
   for (Polygon& polygon : scene.polygons) {
@@ -100,7 +148,7 @@ Spectrum color(const aiMaterial& material, const char* key, double otherwise) {
   return rgb(found.r, found.g, found.b);
 }
 
-// Besides that of the diffuse colour.
+// Besides that of the diffuse color.
 bool has_other_texture(const aiMaterial& material) {
   for (int type = aiTextureType_DIFFUSE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     if (material.GetTextureCount(static_cast<aiTextureType>(type)) > 0) return true;
@@ -113,7 +161,7 @@ double number_or(const aiMaterial& material, const char* key, double otherwise) 
   return material.Get(key, 0, 0, found) == aiReturn_SUCCESS ? found : otherwise;
 }
 
-// What goes through: in COLLADA by the transparent colour (opaque="RGB_ZERO"), whose luminance the opacity has already.
+// The transmittance: in COLLADA by the transparent color (opaque="RGB_ZERO"), whose luminance the opacity has already.
 Spectrum let_through(const aiMaterial& material, double opacity) {
   const Spectrum filter = color(material, "$clr.transparent", 1).max(0);
   const double luminance = 0.212671 * filter[0] + 0.715160 * filter[1] + 0.072169 * filter[2];
@@ -121,7 +169,7 @@ Spectrum let_through(const aiMaterial& material, double opacity) {
   return (1 - opacity) / luminance * filter;
 }
 
-// A picture stands in the place of the diffuse colour, for which assimp then tells 1.
+// A picture stands in the place of the diffuse color, for which assimp then reports 1.
 Material with_place_for_picture(Material material, const AssimpPicture& picture) {
   const Spectrum grey = default_material().reflectance;
   const auto value = static_cast<float>(grey[0]);
@@ -152,7 +200,7 @@ bool is_used(const aiScene& model, unsigned int material) {
 }
 
 // The scene with all materials of the model, and with notes on what those that meshes use have that is not simulated.
-// Those with a picture are grey and have one texel; where there are pictures the inputs name them, one for each
+// Those with a picture are gray and have one texel; where there are pictures the inputs name them, one for each
 // material, as with_decoded_pictures() takes them.
 Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictures& pictures) {
   std::vector<std::string> ignored;
@@ -216,8 +264,7 @@ class AssimpCollector {
 
  private:
   void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& to_scene, const std::string& group) {
-    const auto [entry, is_new] = groups_.emplace(group, static_cast<std::uint32_t>(scene_.groups.size()));
-    if (is_new) scene_.groups.push_back(group);
+    const std::uint32_t index = groups_.index_of(group, scene_.groups);
     const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
     for (unsigned int v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D& p = mesh.mVertices[v];
@@ -239,8 +286,9 @@ class AssimpCollector {
         polygon.corners.push_back(first + corner);
       }
       polygon.material = mesh.mMaterialIndex;
-      polygon.group = entry->second;
-      if (scene_.materials[polygon.material].texture) polygon.texture_map = mapped(polygon, first, places);
+      polygon.group = index;
+      if (scene_.materials[polygon.material].texture)
+        polygon.texture_map = mapped_.add(scene_.vertices, polygon.corners, first, places);
       scene_.polygons.push_back(std::move(polygon));
     }
   }
@@ -250,27 +298,17 @@ class AssimpCollector {
     return picture == pictures_.end() ? std::vector<Eigen::Vector2d>() : places_in(picture->second, mesh);
   }
 
-  std::uint32_t mapped(const Polygon& polygon, std::uint32_t first, const std::vector<Eigen::Vector2d>& places) {
-    std::vector<Point> corners;
-    std::vector<Eigen::Vector2d> in_picture;
-    for (const std::uint32_t corner : polygon.corners) {
-      corners.push_back(scene_.vertices[corner]);
-      if (!places.empty()) in_picture.push_back(places[corner - first]);
-    }
-    return mapped_.add(corners, in_picture, 0);
-  }
-
   Scene scene_;
   const aiScene& model_;
   const AssimpPictures& pictures_;
   MappedFaces mapped_;
-  std::map<std::string, std::uint32_t> groups_;
+  GroupIndex groups_;
   LeftOut left_out_;
 };
 
 // Reads a COLLADA model with assimp: all faces, in the order of the nodes, with the nodes' transformations.
-// Coordinates pass through single precision, and axes stay as in the file. Diffuse colours become reflectances,
-// emissive colours radiances in W/(m^2 sr), an opacity below 1 makes a pane. Fills vertices (metres), polygons,
+// Coordinates pass through single precision, and axes stay as in the file. Diffuse colors become reflectances,
+// emissive colors radiances in W/(m^2 sr), an opacity below 1 makes a pane. Fills vertices (meters), polygons,
 // materials, maps into pictures, groups (names of the nodes), file, metres_per_unit, notes and the inputs, as
 // with_decoded_pictures() takes them. May crash on damaged files: call it within read_isolated(). Throws InputError
 // naming `file`.
@@ -297,7 +335,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, double met
   return scene;
 }
 
-// The file's <up_axis>: X_UP, Y_UP (also when there is none) or Z_UP. assimp does not tell it.
+// The file's <up_axis>: X_UP, Y_UP (also when there is none) or Z_UP. assimp does not report it.
 Vector up_axis(const std::string& text) {
   constexpr std::string_view element = "<up_axis>";
   const std::size_t found = text.find(element);

@@ -54,7 +54,8 @@ bool has_extension(const nlohmann::json& item, const char* extension) {
   return item.is_object() && item.contains(nlohmann::json::json_pointer(std::string("/extensions/") + extension));
 }
 
-// What tinygltf takes: one byte stands for a buffer that is nowhere, and triangles that draco holds name no indices.
+// The JSON that tinygltf accepts: one byte stands for a buffer that is nowhere, and triangles that draco holds name no
+// indices.
 std::string as_tinygltf_takes_it(const std::string& text) {
   nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (auto* const buffers = items_of(json, "buffers")) {
@@ -84,8 +85,7 @@ std::string as_tinygltf_takes_it(const std::string& text) {
 
 std::size_t count_in(const tinygltf::Value& table, const char* key) {
   const double number = table.Has(key) && table.Get(key).IsNumber() ? table.Get(key).GetNumberAsDouble() : 0;
-  constexpr double most = 4e9;
-  return number >= 0 && number <= most ? static_cast<std::size_t>(number) : 0;
+  return number >= 0 && number <= 4e9 ? static_cast<std::size_t>(number) : 0;
 }
 
 std::string word_in(const tinygltf::Value& table, const char* key) {
@@ -101,7 +101,7 @@ std::basic_string_view<unsigned char> part_of(const tinygltf::Model& model, std:
   return {data.data() + offset, length};
 }
 
-// What a view says of itself, as EXT_meshopt_compression has it.
+// The statements of a view, as EXT_meshopt_compression has them.
 struct PackedView {
   std::string mode;
   std::string filter;
@@ -130,10 +130,8 @@ bool unpack_indices(const PackedView& view, std::basic_string_view<unsigned char
 
 // The bytes of a view; empty where it is damaged.
 std::vector<unsigned char> unpacked(const PackedView& view, std::basic_string_view<unsigned char> packed) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 31U;
-  constexpr std::size_t most_stride = 256;
-  if (packed.empty() || view.count == 0 || view.stride == 0 || view.stride > most_stride ||
-      view.count > most_bytes / view.stride)
+  if (packed.empty() || view.count == 0 || view.stride == 0 || view.stride > 256 ||
+      view.count > (std::size_t{1} << 31U) / view.stride)
     return {};
   std::vector<unsigned char> bytes(view.count * view.stride);
   const bool good = view.mode == "ATTRIBUTES" ? unpack_attributes(view, packed, bytes.data())
@@ -182,7 +180,7 @@ bool is_accessor(const tinygltf::Model& model, int accessor) {
   return accessor >= 0 && static_cast<std::size_t>(accessor) < model.accessors.size();
 }
 
-// What draco decodes from the buffer view that a primitive names; null where that is damaged.
+// The mesh that draco decodes from the buffer view that a primitive names; null where that is damaged.
 std::unique_ptr<draco::Mesh> draco_mesh(const tinygltf::Model& model, const tinygltf::Value& packed) {
   const std::size_t view = count_in(packed, "bufferView");
   if (view >= model.bufferViews.size()) return nullptr;
@@ -197,7 +195,7 @@ std::unique_ptr<draco::Mesh> draco_mesh(const tinygltf::Model& model, const tiny
   return decoded.ok() ? std::move(decoded).value() : nullptr;
 }
 
-// Three numbers for each point; empty where they cannot be told.
+// Three numbers for each point; empty where they are not known.
 std::vector<float> positions_of(const draco::Mesh& mesh, const tinygltf::Value& packed) {
   if (!packed.Has("attributes") || !packed.Get("attributes").Has("POSITION")) return {};
   const draco::PointAttribute* const attribute =
@@ -340,7 +338,7 @@ bool read_file(std::vector<unsigned char>* out, std::string* error, const std::s
   }
 }
 
-// What may not be looked at counts as there: reading it is refused.
+// A file outside of `confine` counts as there: reading it is refused.
 bool file_exists(const std::string& name, void* parts) {
   try {
     require_within(static_cast<GltfFiles*>(parts)->confine, name, name);
@@ -396,6 +394,40 @@ const Item& item(const std::vector<Item>& items, int index, const char* what, co
                                ", which is not in the file\nhint: export it again");
   }
   return items[static_cast<std::size_t>(index)];
+}
+
+Wrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
+  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
+}
+
+// KHR_texture_transform: scaled, turned about the origin counter-clockwise, as the picture is seen with v downwards,
+// and moved.
+struct TextureTransform {
+  Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();
+  std::optional<int> set;
+};
+
+Eigen::Vector2d pair_of(const tinygltf::Value& extension, const char* key, double otherwise) {
+  Eigen::Vector2d pair(otherwise, otherwise);
+  if (!extension.Has(key) || extension.Get(key).ArrayLen() < 2) return pair;
+  for (int k = 0; k < 2; ++k) pair[k] = extension.Get(key).Get(static_cast<std::size_t>(k)).GetNumberAsDouble();
+  return pair;
+}
+
+TextureTransform transform_of(const tinygltf::TextureInfo& texture) {
+  TextureTransform transform;
+  const auto found = texture.extensions.find("KHR_texture_transform");
+  if (found == texture.extensions.end()) return transform;
+  const tinygltf::Value& extension = found->second;
+  const double angle = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0;
+  Eigen::Matrix2d turn;
+  turn << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle);
+  transform.linear = turn * pair_of(extension, "scale", 1).asDiagonal();
+  transform.offset = pair_of(extension, "offset", 0);
+  if (extension.Has("texCoord")) transform.set = extension.Get("texCoord").GetNumberAsInt();
+  return transform;
 }
 
 }  // namespace
@@ -460,6 +492,25 @@ std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, 
     }
   }
   return values;
+}
+
+std::array<Wrap, 2> gltf_wrap(const tinygltf::Model& model, int texture) {
+  const int sampler = model.textures[static_cast<std::size_t>(texture)].sampler;
+  if (sampler < 0 || static_cast<std::size_t>(sampler) >= model.samplers.size()) return {};
+  const tinygltf::Sampler& stated = model.samplers[static_cast<std::size_t>(sampler)];
+  return {wrap_of(stated.wrapS), wrap_of(stated.wrapT)};
+}
+
+std::vector<Eigen::Vector2d> gltf_places(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                         const tinygltf::TextureInfo& texture, const std::string& file) {
+  const TextureTransform transform = transform_of(texture);
+  const auto set = primitive.attributes.find("TEXCOORD_" + std::to_string(transform.set.value_or(texture.texCoord)));
+  if (set == primitive.attributes.end()) return {};
+  const std::vector<double> values = accessor_values(model, set->second, 2, file);
+  std::vector<Eigen::Vector2d> places;
+  for (std::size_t k = 0; k + 1 < values.size(); k += 2)
+    places.emplace_back(transform.linear * Eigen::Vector2d(values[k], values[k + 1]) + transform.offset);
+  return places;
 }
 
 }  // namespace patchlight

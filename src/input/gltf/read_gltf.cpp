@@ -1,5 +1,3 @@
-#include "input/gltf/read_gltf.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
@@ -7,14 +5,11 @@
 #include "base/rounded.h"
 #include "files/sha256.h"
 #include "input/gltf/gltf_model.h"
-#include "input/gltf/gltf_texture.h"
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
+#include "input/read_model.h"
 #include "input/scene_bytes.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
-#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +37,7 @@ int image_of(const tinygltf::Model& model, int texture) {
   return exists ? model.textures[static_cast<std::size_t>(texture)].source : -1;
 }
 
-// The mean colour of a texture; nothing when it is unknown.
+// The mean color of a texture; nothing when it is unknown.
 std::optional<Spectrum> texture_color(const GltfModel& gltf, int texture) {
   const auto found = gltf.mean_color.find(image_of(gltf.model, texture));
   if (found == gltf.mean_color.end()) return std::nullopt;
@@ -61,16 +56,12 @@ double number_of(const tinygltf::Material& material, const char* extension, cons
   return found->second.Get(key).GetNumberAsDouble();
 }
 
-double emissive_strength(const tinygltf::Material& material) {
-  return number_of(material, "KHR_materials_emissive_strength", "emissiveStrength", 1);
-}
-
 // KHR_materials_transmission.
 double transmission(const tinygltf::Material& material) {
   return std::clamp(number_of(material, "KHR_materials_transmission", "transmissionFactor", 0), 0.0, 1.0);
 }
 
-// The alpha of the base colour's picture; null where it is 1 all over, or unknown.
+// The alpha of the base color's picture; null where it is 1 all over, or unknown.
 const AlphaColours* alpha_picture(const GltfModel& gltf, const tinygltf::Material& material) {
   const int image = image_of(gltf.model, material.pbrMetallicRoughness.baseColorTexture.index);
   const auto found = gltf.alpha.find(image);
@@ -82,13 +73,14 @@ double alpha_factor(const tinygltf::Material& material) {
   return factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1;
 }
 
-// A picture tells where the surface is: glTF 2.0 section 3.9.4.
+// A picture states where the surface is: glTF 2.0 section 3.9.4.
 bool is_cut_out(const GltfModel& gltf, const tinygltf::Material& material) {
   const bool heeds_alpha = material.alphaMode == "MASK" || material.alphaMode == "BLEND";
   return heeds_alpha && alpha_picture(gltf, material);
 }
 
-// What is there of it, of the colour of the picture: where alpha reaches the cutoff, or the share alpha of each place.
+// The part of it that is there, in the color of the picture: where alpha reaches the cutoff, or the share alpha of each
+// place.
 Coverage cut_out_coverage(const GltfModel& gltf, const tinygltf::Material& material) {
   const double factor = alpha_factor(material);
   const bool is_mask = material.alphaMode == "MASK";
@@ -106,8 +98,7 @@ double covered_share(const GltfModel& gltf, const tinygltf::Material& material) 
 
 // KHR_materials_ior, which says that 1.5 holds without it.
 double index_of(const tinygltf::Material& material) {
-  constexpr double usual = 1.5;
-  return plausible_index(number_of(material, "KHR_materials_ior", "ior", usual), usual);
+  return plausible_index(number_of(material, "KHR_materials_ior", "ior", 1.5), 1.5);
 }
 
 // "transmissionFactor 0.9", "alpha 0.3", or both.
@@ -129,7 +120,7 @@ bool is_mirror(const GltfModel& gltf, const tinygltf::Material& material) {
          surface.metallicRoughnessTexture.index < 0 && !is_clear(gltf, material);
 }
 
-// glTF 2.0 appendix B.2: a metal reflects its base colour, and nothing diffusely.
+// glTF 2.0 appendix B.2: a metal reflects its base color, and nothing diffusely.
 Material with_metal(Material material, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const Spectrum color = material.reflectance;
@@ -138,7 +129,7 @@ Material with_metal(Material material, const tinygltf::Material& read) {
       "metallicFactor " + rounded(surface.metallicFactor) + " and roughnessFactor " + rounded(surface.roughnessFactor));
 }
 
-// What is covered reflects the part of the base colour that it does not transmit, KHR_materials_transmission says, and
+// The covered share reflects the part of the base color that it does not transmit, KHR_materials_transmission says, and
 // transmits the other part, but for what the surfaces of glass reflect even if it absorbs nothing.
 // Holes alone have no index of refraction: through them light goes as through air.
 Material with_transparency(Material material, const GltfModel& gltf, const tinygltf::Material& read) {
@@ -158,7 +149,7 @@ Material with_transparency(Material material, const GltfModel& gltf, const tinyg
   return pane;
 }
 
-// The picture of the base colour where it has more than one colour.
+// The picture of the base color where it has more than one color.
 std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const auto found = gltf.textures.find(image_of(gltf.model, surface.baseColorTexture.index));
@@ -167,9 +158,13 @@ std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinyglt
                              gltf_wrap(gltf.model, surface.baseColorTexture.index)};
 }
 
+// A material as a diffuse one: reflectance is the base color, radiance in W/(m^2 sr) the emissive factor times the
+// emissive strength. A texture counts by its mean color, if it could be decoded. Those with transmission or, blended,
+// an alpha below 1 are panes, smooth metals mirrors.
 Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   const int picture = read.pbrMetallicRoughness.baseColorTexture.index;
-  const Spectrum radiance = emissive_strength(read) * color(read.emissiveFactor, 0);
+  const double strength = number_of(read, "KHR_materials_emissive_strength", "emissiveStrength", 1);
+  const Spectrum radiance = strength * color(read.emissiveFactor, 0);
   // Exitance = pi radiance for a Lambertian emitter.
   Material material{read.name, with_texture(color_factor(read), gltf, picture),
                     std::numbers::pi * with_texture(radiance, gltf, read.emissiveTexture.index)};
@@ -229,15 +224,6 @@ std::vector<std::string> covered_shares(const GltfModel& gltf) {
     names.push_back(name_of_material(gltf.model, m) + " (" + rounded(covered_share(gltf, material)) + ")");
   }
   return names;
-}
-
-// The materials of a glTF file as diffuse ones: reflectance is the base colour, radiance in W/(m^2 sr) the emissive
-// factor times the emissive strength. A texture counts by its mean colour, if it could be decoded. Those with
-// transmission or, blended, an alpha below 1 are panes, smooth metals mirrors.
-std::vector<Material> gltf_materials(const GltfModel& gltf) {
-  std::vector<Material> materials;
-  for (const tinygltf::Material& read : gltf.model.materials) materials.push_back(material_from(gltf, read));
-  return materials;
 }
 
 // The numbers of materials that are metallic and no mirrors, or transparent by textures or masks.
@@ -390,7 +376,7 @@ class GltfCollector {
     for (std::array<std::uint32_t, 3> triangle : triangles_of(corners_of(primitive, count), mode)) {
       if (mirrored) std::swap(triangle[1], triangle[2]);
       polygon.corners = {first + triangle[0], first + triangle[1], first + triangle[2]};
-      if (is_textured) polygon.texture_map = mapped(triangle, first, places);
+      if (is_textured) polygon.texture_map = mapped_.add(scene_.vertices, polygon.corners, first, places);
       if (polygon.back_material) polygon.back_texture_map = polygon.texture_map;
       scene_.polygons.push_back(polygon);
     }
@@ -407,17 +393,6 @@ class GltfCollector {
   std::vector<Eigen::Vector2d> places_of(const tinygltf::Primitive& primitive) const {
     const auto& material = model_.materials[static_cast<std::size_t>(primitive.material)];
     return gltf_places(model_, primitive, material.pbrMetallicRoughness.baseColorTexture, scene_.file);
-  }
-
-  std::uint32_t mapped(const std::array<std::uint32_t, 3>& triangle, std::uint32_t first,
-                       const std::vector<Eigen::Vector2d>& places) {
-    std::vector<Point> corners;
-    std::vector<Eigen::Vector2d> in_picture;
-    for (const std::uint32_t vertex : triangle) {
-      corners.push_back(scene_.vertices[first + vertex]);
-      if (vertex < places.size()) in_picture.push_back(places[vertex]);
-    }
-    return mapped_.add(corners, in_picture, 0);
   }
 
   MaterialIndex material_of(const tinygltf::Primitive& primitive) {
@@ -488,13 +463,13 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.file = file.string();
   scene.sha256 = sha256(gltf.files.bytes);
   scene.inputs = gltf.files.names;
-  scene.materials = gltf_materials(gltf);
+  for (const tinygltf::Material& read : gltf.model.materials) scene.materials.push_back(material_from(gltf, read));
   if (!gltf.model.animations.empty() || !gltf.model.skins.empty())
     scene.diagnostics.push_back(
         {DiagnosticCode::simplified_part, "animations and skins are ignored: the model is taken as it stands"});
   scene = with_lost_lights(std::move(scene), gltf.model);
 
-  // 2. The triangles, in metres: glTF 2.0 section 3.4 fixes the unit and that +y is up.
+  // 2. The triangles, in meters: glTF 2.0 section 3.4 fixes the unit and that +y is up.
   Eigen::Matrix4d to_scene = Eigen::Matrix4d::Identity();
   to_scene.topLeftCorner<3, 3>() *= metres_per_unit;
   GltfCollector collector(gltf.model, std::move(scene));
@@ -504,7 +479,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   scene.up = Vector::UnitY();
   scene.up_stated = true;
 
-  // 3. What is not simulated.
+  // 3. Properties that are not simulated.
   scene.unsimulated = unsimulated(gltf);
   scene.diagnostics = merged({std::move(scene.diagnostics), notes_on_materials(gltf)});
   return scene;

@@ -1,5 +1,3 @@
-#include "input/ifc/read_ifc.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
@@ -9,7 +7,7 @@
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/stated_panes.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -76,7 +74,7 @@ fs::path shared_file(const fs::path& name) {
 using IfcJson = nlohmann::json;
 
 struct IfcTriangles {
-  std::vector<Point> points;  // metres
+  std::vector<Point> points;  // meters
   std::vector<std::array<std::uint32_t, 3>> corners;
 };
 
@@ -127,7 +125,7 @@ class IfcScene {
         scene_.materials.push_back(ifc_material(line));
       }
     }
-    // Points come in metres by the unit that the file states.
+    // Points come in meters by the unit that the file states.
     if (line.contains("unit") && metres_per_unit_) scale_ = *metres_per_unit_ / line.at("unit").get<double>();
     if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
     if (line.contains("space")) add_space(line);
@@ -156,11 +154,8 @@ class IfcScene {
   }
 
   void add_element(const IfcJson& line) {
-    const auto name = line.at("element").get<std::string>();
-    const auto [group, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
-    if (is_new) scene_.groups.push_back(name);
     Polygon polygon;
-    polygon.group = group->second;
+    polygon.group = groups_.index_of(line.at("element").get<std::string>(), scene_.groups);
     polygon.material = line.at("material").get<MaterialIndex>();
     if (polygon.material >= scene_.materials.size()) throw std::out_of_range("a material is not there");
     const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
@@ -189,7 +184,7 @@ class IfcScene {
   std::optional<double> metres_per_unit_;
   double scale_ = 1;
   LeftOut left_out_;
-  std::map<std::string, std::uint32_t> groups_;
+  GroupIndex groups_;
   std::map<std::uint64_t, std::size_t> rooms_;
   bool is_complete_ = false;
 };
@@ -214,8 +209,6 @@ Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::
                      "the output of the IFC reader is damaged: " + reason_of(error) + "\nhint: export the file again");
   }
 }
-
-namespace fs = std::filesystem;
 
 // The file of a program that PATH finds; empty when there is none.
 fs::path program_file(const std::string& name) {

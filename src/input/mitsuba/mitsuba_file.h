@@ -3,6 +3,7 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
 
+#include "input/mitsuba/mitsuba_file.h"
 #include "input/picture_colours.h"
 #include "input/xml_file.h"
 
@@ -10,12 +11,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace patchlight {
 
-/// A Mitsuba scene with the files that it includes, and what its values stand for. Names of properties count without
+/// A Mitsuba scene with the files that it includes, and the meaning of its values. Names of properties count without
 /// capitals and underscores, so that "toWorld" of Mitsuba 0.5 and "to_world" of Mitsuba 3 are one: "toworld".
 class MitsubaFile {
  public:
@@ -33,14 +36,14 @@ class MitsubaFile {
   std::string place(const pugi::xml_node& node) const;
   std::uint32_t line(const pugi::xml_node& node) const;
 
-  /// What an attribute says, "$name" replaced by what <default> says of it; empty if there is none.
+  /// The text of an attribute, with "$name" replaced by its <default>; empty if there is none.
   std::string text(const pugi::xml_node& node, const char* attribute) const;
 
-  /// The property of this name, or what a <ref> of this name names; an empty node if there is none.
+  /// The property of this name, or the element that a <ref> of this name refers to; an empty node if there is none.
   /// \throws InputError where a <ref> names nothing.
   pugi::xml_node property(const pugi::xml_node& node, const std::string& name) const;
 
-  /// What it says; `otherwise` if there is none.
+  /// Its value; `otherwise` if there is none.
   std::string word(const pugi::xml_node& node, const std::string& name, const std::string& otherwise) const;
   double number(const pugi::xml_node& node, const std::string& name, double otherwise) const;
   bool flag(const pugi::xml_node& node, const std::string& name) const;
@@ -52,7 +55,7 @@ class MitsubaFile {
   /// The first nested element of a kind ("bsdf"), or the one that a <ref> there names; empty if there is none.
   pugi::xml_node nested(const pugi::xml_node& node, const std::string& kind) const;
 
-  /// The mean colour of the picture that a texture of the type bitmap names; nothing where it cannot be read.
+  /// The mean color of the picture that a texture of the type bitmap names; nothing where it cannot be read.
   std::optional<Spectrum> picture(const pugi::xml_node& texture) const;
   const PictureColours& pictures() const { return pictures_; }
 
@@ -76,5 +79,20 @@ class MitsubaFile {
   std::map<std::string, pugi::xml_node> by_id_;
   PictureColours pictures_;
 };
+
+/// A color as linear RGB, and what of it could not be carried.
+struct MitsubaColour {
+  Spectrum value;
+  std::string simplified;  ///< for a note; empty if nothing is lost
+};
+
+/// The color of <rgb>, <srgb>, <spectrum>, <blackbody>, <float> or a texture; pictures and checkerboards count by their
+/// mean, other textures as 0.5. Nothing for another element. \throws InputError naming the line.
+std::optional<MitsubaColour> mitsuba_colour(const MitsubaFile& file, const pugi::xml_node& node);
+
+/// The linear RGB (Rec. 709) of a spectrum that is piecewise linear between (wavelength in nm, value), 0 beyond, by the
+/// color matching functions of the CIE 1931 observer as Wyman, Sloan and Shirley 2013 fit them. An even spectrum of 1
+/// is 1, 1, 1.
+Spectrum rgb_of_wavelengths(std::span<const std::pair<double, double>> samples);
 
 }  // namespace patchlight

@@ -1,5 +1,3 @@
-#include "input/mitsuba/read_mitsuba.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
@@ -8,16 +6,10 @@
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/mesh/read_ply.h"
 #include "input/mitsuba/mitsuba_file.h"
-#include "input/mitsuba/mitsuba_spectrum.h"
-#include "input/obj/read_obj.h"
-#include "input/reading_limits.h"
+#include "input/read_model.h"
 #include "input/round_shapes.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
 #include "input/text.h"
-#include "input/unique_names.h"
 #include "scene/model_face.h"
 
 #include <algorithm>
@@ -45,6 +37,7 @@ struct MitsubaMeshes {
   Diagnostics losses;                        // parts that are left out
 };
 
+// The kinds of shapes that can be read.
 constexpr std::array kinds_of_shapes = {"obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"};
 
 // From -1 to 1 in x and y; its front looks along +z.
@@ -92,11 +85,6 @@ FacetedShape cylinder_of(const MitsubaFile& file, const pugi::xml_node& shape) {
                       file.number(shape, "radius", 1), file.number(shape, "radius", 1));
 }
 
-// The kinds of shapes that can be read: obj, ply, rectangle, cube, sphere, disk and cylinder.
-bool is_mitsuba_shape(const std::string& kind) {
-  return std::find(kinds_of_shapes.begin(), kinds_of_shapes.end(), kind) != kinds_of_shapes.end();
-}
-
 // The faces of a shape before its transformation. Nothing when the file of a mesh is not there. Throws InputError
 // naming the line, or the mesh's file.
 std::optional<FacetedShape> mitsuba_shape(const MitsubaFile& file, const pugi::xml_node& shape, MitsubaMeshes& meshes) {
@@ -117,14 +105,14 @@ std::optional<FacetedShape> mitsuba_shape(const MitsubaFile& file, const pugi::x
   return std::nullopt;
 }
 
-// What stands for a BSDF of Mitsuba.
+// The material that stands for a BSDF of Mitsuba.
 struct MitsubaMaterial {
   Material material;
   bool is_nothing = false;              // light passes as if the surface were not there
   std::vector<std::string> simplified;  // what is not carried, for notes
 };
 
-// What is put around another BSDF and changes no diffuse light.
+// BSDFs around another one that change no diffuse light.
 constexpr std::array wrappers = {"twosided", "bumpmap", "bump",         "normalmap", "mask",
                                  "opacity",  "coating", "roughcoating", "blendbsdf", "mixturebsdf"};
 // The properties that may say what a surface reflects, the first one counts.
@@ -158,6 +146,9 @@ Spectrum fresnel(const Spectrum& eta, const Spectrum& k) {
   return ((eta - 1).square() + k.square()) / ((eta + 1).square() + k.square());
 }
 
+// Reads the material of a BSDF: diffuse ones and the diffuse part of others as they are, dielectrics as panes, smooth
+// conductors as mirrors, other glossy surfaces matt. Nested ones count through their wrappers. An empty node stands for
+// a surface without a BSDF. Throws InputError naming the line.
 class MaterialReader {
  public:
   MaterialReader(const MitsubaFile& file, const std::string& name) : file_(file) {
@@ -214,7 +205,7 @@ class MaterialReader {
     read_.material.reflectance = found.value_or(rgb(0.5, 0.5, 0.5)).min(1).max(0);
   }
 
-  // A pane of that index which absorbs nothing, or colours the light.
+  // A pane of that index which absorbs nothing, or colors the light.
   void add_glass(const pugi::xml_node& bsdf, const std::string& kind) {
     const double inside = index_in(file_, bsdf, "intior", 1.5046);
     const double outside = index_in(file_, bsdf, "extior", 1.000277);
@@ -256,13 +247,6 @@ class MaterialReader {
   MitsubaMaterial read_;
 };
 
-// The material of a BSDF: diffuse ones and the diffuse part of others as they are, dielectrics as panes, smooth
-// conductors as mirrors, other glossy surfaces matt. Nested ones count through their wrappers. An empty node stands
-// for a surface without a BSDF. Throws InputError naming the line.
-MitsubaMaterial mitsuba_material(const MitsubaFile& file, const pugi::xml_node& bsdf, const std::string& name) {
-  return MaterialReader(file, name).of(bsdf, 0);
-}
-
 Spectrum strength(const MitsubaFile& file, const pugi::xml_node& emitter, const std::string& name) {
   const std::optional<MitsubaColour> found = mitsuba_colour(file, file.property(emitter, name));
   return (found ? found->value : rgb(1, 1, 1)) * file.number(emitter, "scale", 1);
@@ -274,11 +258,17 @@ Vector turned(const Eigen::Matrix4d& matrix, const Vector& direction) {
 
 Point placed_at(const Eigen::Matrix4d& matrix, const Point& point) { return (matrix * point.homogeneous()).head<3>(); }
 
-Scene with_point(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
+// Named by its id, else `otherwise`.
+Luminaire luminaire_of(const MitsubaFile& file, const pugi::xml_node& emitter, const char* otherwise) {
   Luminaire luminaire;
   const std::string id = file.text(emitter, "id");
-  luminaire.name = id.empty() ? "point light" : id;
+  luminaire.name = id.empty() ? otherwise : id;
   luminaire.place = file.place(emitter);
+  return luminaire;
+}
+
+Scene with_point(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
+  Luminaire luminaire = luminaire_of(file, emitter, "point light");
   luminaire.position =
       scene.metres_per_unit * placed_at(file.to_world(emitter), file.vector(emitter, "position", Vector::Zero()));
   luminaire.light = PointLight{strength(file, emitter, "intensity") * std::pow(scene.metres_per_unit, 2)};
@@ -295,10 +285,7 @@ Scene with_spot(Scene scene, const MitsubaFile& file, const pugi::xml_node& emit
     throw InputError(file.place(emitter), "found a spot with a beam width of " + rounded(beam) +
                                               " and a cutoff angle of " + rounded(cutoff) +
                                               " degrees; expected 0 <= beam width < cutoff angle <= 90");
-  Luminaire luminaire;
-  const std::string id = file.text(emitter, "id");
-  luminaire.name = id.empty() ? "spot light" : id;
-  luminaire.place = file.place(emitter);
+  Luminaire luminaire = luminaire_of(file, emitter, "spot light");
   const Eigen::Matrix4d matrix = file.to_world(emitter);
   luminaire.position = scene.metres_per_unit * placed_at(matrix, Point::Zero());
   luminaire.aim = turned(matrix, Vector::UnitZ());
@@ -417,7 +404,7 @@ class MitsubaReader {
     const std::string name = name_of(shape);
     if (kind == "shapegroup") return;  // stands where instances say
     if (kind == "instance") return add_instance(shape, above, depth);
-    if (!is_mitsuba_shape(kind))
+    if (!is_one_of(kinds_of_shapes, kind))
       return left_out_.lose("shapes that cannot be read are left out, of the kind " + kind, name);
     const std::optional<FacetedShape> faces = mitsuba_shape(file_, shape, meshes_);
     if (!faces) return left_out_.lose("meshes that are not there, left out", file_.word(shape, "filename", ""));
@@ -444,16 +431,11 @@ class MitsubaReader {
                  MaterialIndex material, std::uint32_t group) {
     if (scene_.polygons.size() + faces.faces.size() > reading_limits::polygons)
       throw InputError(file_.place(shape), "there are more than 10,000,000 faces, counting instances; expected fewer");
-    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
-    for (const Point& point : faces.points) scene_.vertices.emplace_back((to_scene * point.homogeneous()).head<3>());
     // A mirrored copy keeps its front.
     const bool is_turned = file_.flag(shape, "flipnormals") != (to_scene.topLeftCorner<3, 3>().determinant() < 0);
-    const std::uint32_t line = file_.line(shape);
-    for (std::vector<std::uint32_t> corners : faces.faces) {
-      for (std::uint32_t& corner : corners) corner += first;
-      if (is_turned) std::reverse(corners.begin(), corners.end());
-      scene_.polygons.push_back({.corners = std::move(corners), .material = material, .group = group, .line = line});
-    }
+    const auto placed = [&](const Point& point) { return placed_at(to_scene, point); };
+    Polygon polygon{.corners = {}, .material = material, .group = group, .line = file_.line(shape)};
+    scene_ = with_shape(std::move(scene_), faces, placed, is_turned, std::move(polygon));
   }
 
   // Nothing for surfaces that light passes as if they were not there.
@@ -465,7 +447,7 @@ class MitsubaReader {
         std::tuple(bsdf.hash_value(), id.empty() ? name : id, std::array{radiance[0], radiance[1], radiance[2]});
     const auto [found, is_new] = index_.emplace(key, std::nullopt);
     if (!is_new) return found->second;
-    MitsubaMaterial read = mitsuba_material(file_, bsdf, id.empty() ? name : id);
+    MitsubaMaterial read = MaterialReader(file_, id.empty() ? name : id).of(bsdf, 0);
     const bool emits = (radiance > 0).any();
     // A lamp without a BSDF, or whose surface is not there for other light, reflects nothing.
     if (emits && (!bsdf || read.is_nothing)) {

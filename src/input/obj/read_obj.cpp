@@ -1,20 +1,14 @@
-#include "input/obj/read_obj.h"
-
 #include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 
 #include "base/near_match.h"
 #include "base/rounded.h"
 #include "files/sha256.h"
-#include "input/at_line.h"
 #include "input/materials.h"
-#include "input/obj/read_mtl.h"
-#include "input/obj/scan_obj.h"
+#include "input/obj/parse_obj.h"
 #include "input/picture_colours.h"
-#include "input/stated_mirrors.h"
-#include "input/stated_panes.h"
+#include "input/read_model.h"
 #include "input/text.h"
-#include "input/texture_maps.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -32,7 +26,7 @@
 namespace patchlight {
 namespace {
 
-// What the mtllib statements of an OBJ file bring.
+// The material files that the mtllib statements of an OBJ file name.
 struct Libraries {
   std::vector<MtlMaterial> materials;        // of those with the same name only the first counts
   std::vector<std::string> texts;            // the files' bytes, for the checksum
@@ -82,7 +76,7 @@ class Folder {
 };
 
 // Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
-// written under Windows. What lies outside of `confine` is refused before anybody looks whether it is there.
+// written under Windows. Places outside of `confine` are refused unseen.
 LibraryFile find_library(Folder& beside, const std::string& name, const std::string& where,
                          const std::filesystem::path& confine) {
   const std::filesystem::path& folder = beside.place();
@@ -181,9 +175,9 @@ std::optional<PictureMask> mask_of(const MtlMaterial& material, const PictureCol
   return is_colour_alone ? PictureMask{1, std::nullopt} : found->second;
 }
 
-// What d and Tr make of the covered share, and light straight through the rest: T = 1 - m + m T_d. Holes alone have no
-// index of refraction. What is covered has the mean colour of map_Kd, or that of its part that is covered where its own
-// alpha tells.
+// The pane that d and Tr make of the covered share, and light straight through the rest: T = 1 - m + m T_d. Holes alone
+// have no index of refraction. What is covered has the mean color of map_Kd, or that of its part that is covered where
+// its own alpha tells.
 MtlMaterial with_holes(MtlMaterial material, const PictureMask& mask, const Spectrum& factor) {
   const double m = mask.covered;
   const std::string statement = "map_d covers " + rounded(m);
@@ -201,6 +195,9 @@ MtlMaterial with_holes(MtlMaterial material, const PictureMask& mask, const Spec
   return material;
 }
 
+// With the picture of map_Kd and its mean color, times Kd where it is not 0, as exporters write it beside a picture,
+// and with the holes of map_d. Where map_d is the picture of map_Kd its alpha counts, and without any it makes no
+// holes.
 MtlMaterial with_picture(MtlMaterial material, const PictureColours& pictures) {
   const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
   const Spectrum factor = has_factor ? material.reflectance : rgb(1, 1, 1);
@@ -230,14 +227,6 @@ PictureColours pictures_of(std::span<const MtlMaterial> materials, const std::fi
   return picture_colours({names.begin(), names.end()}, confine, model);
 }
 
-// The materials with the pictures of map_Kd and their mean colours, times Kd where it is not 0, as exporters write it
-// beside a picture, and with the holes of those of map_d. Where map_d is the picture of map_Kd its alpha counts, and
-// without any it makes no holes.
-std::vector<MtlMaterial> with_pictures(std::vector<MtlMaterial> materials, const PictureColours& pictures) {
-  for (MtlMaterial& material : materials) material = with_picture(std::move(material), pictures);
-  return materials;
-}
-
 // One sentence for each map_Kd and map_d whose picture cannot be read, and one on those that leave holes.
 Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const PictureColours& pictures) {
   Diagnostics notes;
@@ -259,7 +248,6 @@ Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const Pict
   return merged({std::move(notes), note_on(DiagnosticCode::cut_out_material, covered_note, covered)});
 }
 
-constexpr double default_reflectance = 0.5;
 constexpr const char* default_name = "default";
 
 // Indices of materials by name; the first one of a name counts.
@@ -274,9 +262,8 @@ IndexByName index_by_name(std::span<const MtlMaterial> defined) {
 MtlMaterial grey_material(const std::string& name) {
   MtlMaterial material;
   material.name = name;
-  material.reflectance = rgb(default_reflectance, default_reflectance, default_reflectance);
-  material.radiance = rgb(0, 0, 0);
-  material.ambient = rgb(0, 0, 0);
+  material.reflectance = default_material().reflectance;
+  material.radiance = material.ambient = rgb(0, 0, 0);
   material.has_reflectance = true;
   return material;
 }
@@ -348,10 +335,9 @@ std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::strin
 // k-th face scanned.
 Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const ObjScan& scan,
                     std::span<const MaterialIndex> materials) {
-  std::map<std::string, std::uint32_t> groups;
+  GroupIndex groups;
   for (const tinyobj::shape_t& shape : shapes) {
-    const auto [group, is_new] = groups.emplace(shape.name, static_cast<std::uint32_t>(scene.groups.size()));
-    if (is_new) scene.groups.push_back(shape.name);
+    const std::uint32_t group = groups.index_of(shape.name, scene.groups);
     auto corner = shape.mesh.indices.begin();
     for (const unsigned char count : shape.mesh.num_face_vertices) {
       const std::size_t face = scene.polygons.size();
@@ -359,7 +345,7 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
       for (int k = 0; k < count; ++k) polygon.corners.push_back(static_cast<std::uint32_t>((corner++)->vertex_index));
       if (!scan.faces[face].corners.empty()) polygon.corners = scan.faces[face].corners;
       polygon.material = materials[face];
-      polygon.group = group->second;
+      polygon.group = group;
       polygon.line = scan.faces[face].line;
       scene.polygons.push_back(std::move(polygon));
     }
@@ -404,9 +390,8 @@ Diagnostics notes_on(const ObjScan& scan, const ObjPalette& palette) {
 
 // "a (room.obj:3), b (room.obj:9) and 12 more".
 std::string first_few(const std::vector<std::string>& texts) {
-  constexpr std::size_t few = 5;
-  const std::size_t count = std::min(few, texts.size());
-  const std::string rest = texts.size() > few ? " and " + std::to_string(texts.size() - few) + " more" : "";
+  const std::size_t count = std::min<std::size_t>(5, texts.size());
+  const std::string rest = texts.size() > count ? " and " + std::to_string(texts.size() - count) + " more" : "";
   return listed(std::span(texts).first(count)) + rest;
 }
 
@@ -485,9 +470,9 @@ Scene read_obj(const std::filesystem::path& file, double metres_per_unit, const 
   defined.insert(defined.end(), undefined.begin(), undefined.end());
   ObjPalette palette = used_materials(defined, face_materials(scan, defined));
   const PictureColours pictures = pictures_of(palette.materials, confine, file.string());
-  palette.materials = with_pictures(std::move(palette.materials), pictures);
+  for (MtlMaterial& material : palette.materials) material = with_picture(std::move(material), pictures);
 
-  // 3. The scene, in metres.
+  // 3. The scene, in meters.
   Scene scene;
   for (const Point& vertex : scan.vertices) scene.vertices.push_back(metres_per_unit * vertex);
   for (const MtlMaterial& material : palette.materials) scene.materials.push_back(obj_material(material));

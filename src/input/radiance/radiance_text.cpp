@@ -1,6 +1,5 @@
 #include "input/radiance/radiance_text.h"
 
-#include "input/at_line.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -50,10 +49,9 @@ std::string_view RadianceText::word(const std::string& what) {
 }
 
 std::size_t RadianceText::count(const std::string& what) {
-  constexpr double most = 1e8;
   const std::string_view found = word("the number of its " + what);
   const std::optional<double> number = finite_number(found);
-  if (!number || *number < 0 || *number > most || std::floor(*number) != *number)
+  if (!number || *number < 0 || *number > 1e8 || std::floor(*number) != *number)
     refuse("found '" + std::string(found) + "' where the number of its " + what + " is expected, 0 or more");
   return static_cast<std::size_t>(*number);
 }

@@ -10,7 +10,7 @@
 
 namespace patchlight {
 
-/// What a Radiance scene file says at one place: a primitive, or a line that starts a program.
+/// A statement of a Radiance scene file: a primitive, or a line that starts a program.
 struct RadiancePrimitive {
   std::string modifier;
   std::string kind;  ///< "polygon"; "alias", whose only word is the name it stands for; "!" for a program

@@ -1,18 +1,14 @@
-#include "input/radiance/read_radiance.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "files/sha256.h"
-#include "input/at_line.h"
 #include "input/left_out.h"
 #include "input/materials.h"
-#include "input/radiance/radiance_genbox.h"
 #include "input/radiance/radiance_material.h"
+#include "input/radiance/radiance_programs.h"
 #include "input/radiance/radiance_text.h"
-#include "input/radiance/radiance_xform.h"
-#include "input/reading_limits.h"
+#include "input/read_model.h"
 #include "input/round_shapes.h"
 #include "input/text.h"
 
@@ -30,12 +26,6 @@
 
 namespace patchlight {
 namespace {
-
-// True for the kinds of surfaces that have a shape of their own: polygon, sphere, bubble, cylinder, tube, cone, cup
-// and ring.
-bool is_radiance_surface(const std::string& kind);
-
-constexpr std::array surfaces = {"polygon", "sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring"};
 
 Point point_at(const RadiancePrimitive& primitive, std::size_t k) {
   return {primitive.numbers[k], primitive.numbers[k + 1], primitive.numbers[k + 2]};
@@ -82,7 +72,9 @@ void require_arguments(const RadiancePrimitive& primitive, const std::string& wh
     throw InputError(where, primitive.kind + " " + primitive.name + " has a negative radius; expected 0 or more");
 }
 
+// True for the kinds of surfaces that have a shape of their own.
 bool is_radiance_surface(const std::string& kind) {
+  constexpr std::array surfaces = {"polygon", "sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring"};
   return std::find(surfaces.begin(), surfaces.end(), kind) != surfaces.end();
 }
 
@@ -179,7 +171,7 @@ Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
 
 namespace fs = std::filesystem;
 
-// How what is read below an !xform stands in the scene.
+// The place of things below an !xform in the scene.
 struct Frame {
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
   std::string modifier;  // instead of those of surfaces; empty: their own
@@ -203,7 +195,7 @@ class RadianceReader {
     top_.placement.linear() *= metres_per_unit;
   }
 
-  RadianceModel model(const fs::path& file) && {
+  FileModel model(const fs::path& file) && {
     scene_.file = file.string();
     scene_.up = Vector::UnitZ();
     scene_.up_stated = true;
@@ -294,11 +286,10 @@ class RadianceReader {
       return left_out_.lose(
           "programs that write skies are not run; --sky and --sun give one, e.g. --sky overcast:10000lx",
           where + " !" + text.substr(0, text.find(' ')));
-    constexpr std::size_t most = 60;
     left_out_.lose(
         "programs other than !genbox and !xform are not run, and their surfaces are left out; replace the lines with "
         "their output",
-        where + " !" + text.substr(0, most));
+        where + " !" + text.substr(0, 60));
   }
 
   // The last program moves the surfaces of those before it.
@@ -397,24 +388,14 @@ class RadianceReader {
                         " sides, moved outward so that areas are kept; of the kind " + primitive.kind,
                     frame.prefix + primitive.name);
     }
-    const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
-    for (const Point& point : shape.points) scene_.vertices.push_back(frame.placement * point);
+    // A mirrored copy keeps its front.
     const bool is_mirrored = frame.placement.linear().determinant() < 0;
-    for (std::vector<std::uint32_t> corners : shape.faces) {
-      for (std::uint32_t& corner : corners) corner += first;
-      // A mirrored copy keeps its front.
-      if (is_mirrored != frame.turns_fronts) std::reverse(corners.begin(), corners.end());
-      scene_.polygons.push_back({.corners = std::move(corners),
-                                 .material = *material,
-                                 .group = group(frame.prefix + primitive.name),
-                                 .line = frame.line == 0 ? line : frame.line});
-    }
-  }
-
-  std::uint32_t group(const std::string& name) {
-    const auto [found, is_new] = groups_.emplace(name, static_cast<std::uint32_t>(scene_.groups.size()));
-    if (is_new) scene_.groups.push_back(name);
-    return found->second;
+    const auto placed = [&](const Point& point) { return Point(frame.placement * point); };
+    Polygon polygon{.corners = {},
+                    .material = *material,
+                    .group = groups_.index_of(frame.prefix + primitive.name, scene_.groups),
+                    .line = frame.line == 0 ? line : frame.line};
+    scene_ = with_shape(std::move(scene_), shape, placed, is_mirrored != frame.turns_fronts, std::move(polygon));
   }
 
   void add_source(const RadiancePrimitive& primitive, const Frame& frame, const std::string& where) {
@@ -436,7 +417,7 @@ class RadianceReader {
   std::map<std::string, std::string> texts_;  // of files
   std::vector<std::string> digests_;          // of the same, in the order in which they were read
   std::map<std::size_t, std::optional<MaterialIndex>> index_;  // of modifiers that surfaces have
-  std::map<std::string, std::uint32_t> groups_;
+  GroupIndex groups_;
   std::vector<FarSource> sources_;
   LeftOut left_out_;
   std::size_t files_ = 0;
@@ -445,8 +426,8 @@ class RadianceReader {
 
 }  // namespace
 
-RadianceModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
-                            RadianceModifiers known) {
+FileModel read_radiance(const fs::path& file, double metres_per_unit, const fs::path& confine,
+                        RadianceModifiers known) {
   return RadianceReader(metres_per_unit, confine, std::move(known)).model(file);
 }
 

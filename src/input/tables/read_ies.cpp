@@ -1,8 +1,7 @@
-#include "input/tables/read_ies.h"
-
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -13,8 +12,6 @@
 
 namespace patchlight {
 namespace {
-
-constexpr double metres_per_foot = 0.3048;
 
 // The table's angles may be so far from the ends that the standard names; degrees.
 constexpr double angle_tolerance = 0.01;
@@ -28,7 +25,7 @@ struct Word {
   std::uint32_t line = 0;
 };
 
-// What follows TILT=, as words separated by spaces and commas; the first is what stands after the equals sign.
+// The text behind TILT=, as words separated by spaces and commas; the first is what stands after the equals sign.
 struct Words {
   std::string file;
   std::vector<Word> words;
@@ -128,7 +125,7 @@ Tilt read_tilt(Words& words) {
 
 bool is_near(double angle, double expected) { return std::abs(angle - expected) < angle_tolerance; }
 
-// The ends that the standard allows tell of which directions the table is.
+// The standard allows few ends: they state the directions of the table.
 void check_vertical(const PhotometricWeb& web, const Words& words) {
   const double first = web.vertical.front();
   const double last = web.vertical.back();
@@ -194,8 +191,8 @@ IesHeader read_header(Words& words) {
   header.vertical = words.count("the number of vertical angles", 2, many);
   header.horizontal = words.count("the number of horizontal angles", 1, many);
   header.type = type_of(words.count("the photometric type", 1, 3));
-  const double unit = words.count("the units type", 1, 2) == 1 ? metres_per_foot : 1;
-  Vector stated;  // width, length, height
+  const double unit = words.count("the units type", 1, 2) == 1 ? 0.3048 : 1;  // feet or meters
+  Vector stated;                                                              // width, length, height
   for (int axis = 0; axis < 3; ++axis) stated[axis] = words.number("the luminous opening");
   // LM-63 of 1991 and 1995 state a circle, an upright cylinder and a sphere without their length.
   if (stated[0] < 0 && stated[1] == 0) stated[1] = stated[0];

@@ -24,11 +24,6 @@ namespace patchlight {
 namespace {
 
 // A text as a string of a TOML file; control characters become question marks.
-std::string toml_text(const std::string& text);
-
-// A point as a list of a TOML file, "[1, 2.5, 0]", to a thousandth.
-std::string toml_text(const Point& point);
-
 std::string toml_text(const std::string& text) {
   std::string result = "\"";
   for (const char letter : text) {
@@ -39,6 +34,7 @@ std::string toml_text(const std::string& text) {
   return result + "\"";
 }
 
+// A point as a list of a TOML file, "[1, 2.5, 0]", to a thousandth.
 std::string toml_text(const Point& point) {
   std::string text = "[";
   for (const double value : point)
@@ -46,18 +42,18 @@ std::string toml_text(const Point& point) {
   return text + "]";
 }
 
-constexpr std::size_t most_named = 12;
-constexpr double smallest_room = 2;  // m^2
-constexpr double lowest_room = 1.8;  // metres: so much is free over a floor
+constexpr std::size_t most_named = 12;  // rooms, in lists and with lamps
+constexpr double lowest_room = 1.8;     // meters: so much is free over a floor
 
+// Those of 2 m^2 or more.
 std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
-  std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < smallest_room; });
+  std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < 2; });
   std::stable_sort(places.begin(), places.end(),
                    [](const NamedFloor& a, const NamedFloor& b) { return area_of(a.floor) > area_of(b.floor); });
   return places;
 }
 
-// What of the scene is highest, along its upright axis.
+// The height of the scene's top along its upright axis.
 double top_of(const Scene& scene) {
   double top = -std::numeric_limits<double>::infinity();
   for (const Point& vertex : scene.vertices) top = std::max(top, vertex.dot(scene.up));
@@ -135,7 +131,7 @@ std::string spectrum_text(const Spectrum& spectrum) {
   return values.find(',') == std::string::npos ? values : "[" + values + "]";
 }
 
-// Commented out: it says what is so without it.
+// Commented out: it states the values that hold without it.
 std::string material_tables(const Scene& scene) {
   std::ostringstream text;
   for (const Material& material : scene.materials) {

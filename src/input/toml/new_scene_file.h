@@ -26,7 +26,7 @@ std::vector<NamedFloor> named_floors(const Scene& scene);
 /// Light for models that have none.
 struct NewLight {
   bool is_sealed = false;                  ///< no daylight gets into the room: it needs lamps
-  std::vector<Point> lamps;                ///< places for them, metres
+  std::vector<Point> lamps;                ///< places for them, meters
   std::vector<std::string> rooms_without;  ///< names; empty where no room has a lamp of its own
 };
 

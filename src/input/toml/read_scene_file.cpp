@@ -3,10 +3,8 @@
 #include "files/sha256.h"
 #include "input/text.h"
 #include "input/toml/scene_file.h"
-#include "input/toml/toml_lights.h"
-#include "input/toml/toml_models.h"
 #include "input/toml/toml_sensors.h"
-#include "input/toml/toml_spectrum.h"
+#include "input/toml/toml_tables.h"
 #include "input/toml/toml_value.h"
 
 #include <cmath>
@@ -23,7 +21,7 @@ void require_no(const TomlValue& table, const char* key, Projection projection) 
   refuse(*value, std::string("none with the projection '") + name_of(projection) + "'\nhint: leave it out");
 }
 
-// With what its picture shows: an angle, or a height.
+// With the extent of its picture: an angle, or a height.
 Camera with_projection(Camera camera, const TomlValue& table, double metres_per_unit) {
   using enum Projection;
   if (const TomlValue* const projection = find(table, "projection")) {
@@ -49,7 +47,7 @@ Camera with_projection(Camera camera, const TomlValue& table, double metres_per_
   return camera;
 }
 
-// The cameras [[camera]] of a scene file, in metres. Throws InputError.
+// The cameras [[camera]] of a scene file, in meters. Throws InputError.
 std::vector<Camera> cameras_of(const TomlValue& root, const TomlFrame& frame) {
   std::vector<Camera> cameras;
   for (const TomlValue& table : tables(find(root, "camera"))) {

@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 
-#include "input/chosen_faces.h"
+#include "input/material_settings.h"
 #include "input/scene_lights.h"
 
 #include <filesystem>
@@ -20,7 +20,7 @@ struct ModelEntry {
   std::filesystem::path file;
   std::string where;                         ///< "room.toml:3", for messages
   std::optional<double> metres_per_unit;     ///< of the model file; if not given, as it states, else 1
-  std::optional<Eigen::Affine3d> placement;  ///< metres to metres
+  std::optional<Eigen::Affine3d> placement;  ///< meters to meters
   FaceChoice choice;                         ///< what of it takes part
 };
 
@@ -29,14 +29,14 @@ struct FloorGrid {
   std::string name;
   std::string group;                 ///< a name of polygon groups, or a pattern with * and ?; empty: of rooms
   std::vector<std::string> rooms;    ///< names of rooms, or patterns
-  double height = 0;                 ///< metres above the floor
-  std::optional<double> spacing;     ///< metres; that of standard_grid() unless stated
-  std::optional<double> from_walls;  ///< metres: no sensor is nearer to the floor's rim; of standard_grid()
+  double height = 0;                 ///< meters above the floor
+  std::optional<double> spacing;     ///< meters; that of standard_grid() unless stated
+  std::optional<double> from_walls;  ///< meters: no sensor is nearer to the floor's rim; of standard_grid()
   std::string file;                  ///< that asks for it
   std::uint32_t line = 0;
 };
 
-/// What a scene file says, in metres, before the models are read.
+/// The content of a scene file, in meters, before the models are read.
 struct SceneFile {
   std::string file;
   std::vector<std::filesystem::path> inputs;  ///< it, and the files of lamps, weather, points and spectra it names

@@ -1,11 +1,9 @@
-#include "input/toml/toml_models.h"
-
 #include "patchlight/base/error.h"
 
 #include "input/material_settings.h"
+#include "input/round_shapes.h"
 #include "input/text.h"
-#include "input/toml/toml_spectrum.h"
-#include "input/toml/turned_about.h"
+#include "input/toml/toml_tables.h"
 #include "light/photometry.h"
 #include "light/spectra.h"
 
@@ -41,7 +39,7 @@ Matrix scale_of(const TomlValue& value) {
   return factors.asDiagonal();
 }
 
-// Turns what is upright in the model file to what is in the scene: a quarter turn around x, or none.
+// Turns the upright axis of the model file to that of the scene: a quarter turn around x, or none.
 Matrix upturned(const Vector& from, const Vector& to) {
   if (from == to) return Matrix::Identity();
   return turned_about(Vector::UnitX(), from == Vector::UnitY() ? 90 : -90);
@@ -98,7 +96,7 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
   return model;
 }
 
-// What a key of a material says, in linear RGB and by wavelength.
+// The setting with the value of a material's key, in linear RGB and by wavelength.
 MaterialSetting with_value(MaterialSetting setting, const TomlValue& value, const TomlFrame& frame) {
   if (setting.quantity == Quantity::light_spectrum) {
     setting.sampled = light_spectrum(value, frame);
@@ -124,13 +122,7 @@ std::vector<MaterialSetting> settings_of_table(const TomlValue& table, const Tom
       of && !find(table, "name") ? *of : required(table, "name", "the name of materials, or a pattern with * and ?");
   const std::string material = &name == of ? "*" : text(name);
   std::vector<MaterialSetting> settings;
-  for (const auto& [key, quantity] :
-       {std::pair("reflectance", Quantity::reflectance),
-        std::pair("specular_reflectance", Quantity::specular_reflectance),
-        std::pair("transmittance", Quantity::transmittance),
-        std::pair("diffuse_transmittance", Quantity::diffuse_transmittance), std::pair("index", Quantity::index),
-        std::pair("exitance", Quantity::exitance), std::pair("radiance", Quantity::radiance),
-        std::pair("spectrum", Quantity::light_spectrum)}) {
+  for (const auto& [key, quantity] : named_quantities) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
     settings.push_back(with_value({material, quantity, {}, name.where, of ? text(*of) : std::string()}, *value, frame));

@@ -6,14 +6,13 @@
 #include "base/rounded.h"
 #include "input/left_out.h"
 #include "input/material_settings.h"
-#include "input/tables/read_points.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
 #include "scene/extent.h"
 #include "scene/room_body.h"
 #include "scene/solids.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <set>
 
@@ -21,10 +20,7 @@ namespace patchlight {
 namespace {
 
 std::uint32_t line_of(const std::string& where) {
-  const std::size_t colon = where.rfind(':');
-  std::uint32_t line = 0;
-  std::from_chars(where.data() + colon + 1, where.data() + where.size(), line);
-  return line;
+  return whole_number_in<std::uint32_t>(std::string_view(where).substr(where.rfind(':') + 1)).value_or(0);
 }
 
 [[noreturn]] void refuse_spacing(const std::string& where, double cells) {
@@ -33,7 +29,7 @@ std::uint32_t line_of(const std::string& where) {
                               "\nhint: a larger spacing");
 }
 
-// The two edges from a corner, in metres, and the spacing: a grid that is not too fine.
+// The two edges from a corner, in meters, and the spacing: a grid that is not too fine.
 void require_sensible(const std::string& where, const std::array<Vector, 2>& edges, double spacing) {
   const double cells = cells_along(edges[0].norm(), spacing) * cells_along(edges[1].norm(), spacing);
   if (!(cells <= most_sensors)) refuse_spacing(where, std::min(cells, 1e18));
@@ -122,30 +118,6 @@ std::variant<SensorGroup, FloorGrid> sensors_of_table(const TomlValue& table, co
   return group;
 }
 
-}  // namespace
-
-std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& root, const TomlFrame& frame) {
-  std::vector<std::variant<SensorGroup, FloorGrid>> all;
-  std::set<std::string> names;
-  for (const TomlValue& table : tables(find(root, "sensors"))) {
-    const TomlValue* const given = find(table, "name");
-    const std::string name = given ? text(*given) : "sensors " + std::to_string(all.size() + 1);
-    all.push_back(sensors_of_table(table, frame, name));
-    if (!names.insert(name).second) refuse(given ? *given : table, "a name that no other sensors have");
-  }
-  return all;
-}
-
-std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame) {
-  std::vector<std::filesystem::path> files;
-  for (const TomlValue& table : tables(find(root, "sensors"))) {
-    if (const TomlValue* const file = find(table, "file")) files.push_back(named_file(*file, frame));
-  }
-  return files;
-}
-
-namespace {
-
 std::string where_of(const FloorGrid& grid) { return grid.file + ":" + std::to_string(grid.line); }
 
 GridSize size_of(const Floor& floor, const FloorGrid& grid) {
@@ -186,8 +158,7 @@ double share_of(const SensorGroup& rest, const Floor& floor, double from_walls) 
 
 // With a note on a grid that covers a part of its floor.
 void note_share(LeftOut& notes, const FloorGrid& grid, const std::string& floor, double share) {
-  constexpr double nearly_all = 0.9;
-  if (share >= nearly_all) return;
+  if (share >= 0.9) return;
   notes.add("sensors '" + grid.name +
                 "' cover a part of the floor only, as a roof or a solid takes the rest; floor and share",
             floor + " " + rounded(100 * share, 2) + " %", DiagnosticCode::missing_sensors);
@@ -199,7 +170,7 @@ std::vector<PolygonIndex> polygons_of_group(const Scene& scene, const FloorGrid&
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const std::string name = group_name(scene, scene.polygons[p].group);
     names.insert(name);
-    if (name == grid.group || matches(name, grid.group)) polygons.push_back(p);
+    if (matches(name, grid.group)) polygons.push_back(p);
   }
   if (!polygons.empty()) return polygons;
   const std::vector<std::string> allowed(names.begin(), names.end());
@@ -226,7 +197,7 @@ FloorSensors over_floor(const Scene& scene, const FloorGrid& grid) {
 
 bool is_meant(const NamedRoom& room, const FloorGrid& grid) {
   return std::any_of(grid.rooms.begin(), grid.rooms.end(),
-                     [&](const std::string& pattern) { return room.name == pattern || matches(room.name, pattern); });
+                     [&](const std::string& pattern) { return matches(room.name, pattern); });
 }
 
 void require_known_rooms(const Scene& scene, const FloorGrid& grid) {
@@ -236,8 +207,8 @@ void require_known_rooms(const Scene& scene, const FloorGrid& grid) {
   std::vector<std::string> names;
   for (const NamedRoom& room : scene.rooms) names.push_back(room.name);
   for (const std::string& pattern : grid.rooms) {
-    const bool is_known = std::any_of(
-        names.begin(), names.end(), [&](const std::string& name) { return name == pattern || matches(name, pattern); });
+    const bool is_known =
+        std::any_of(names.begin(), names.end(), [&](const std::string& name) { return matches(name, pattern); });
     if (!is_known)
       throw InputError(where_of(grid), "sensors.room: no room is called '" + pattern + "'" +
                                            suggestion(pattern, names) + "\nhint: the rooms are " + listed(names));
@@ -299,6 +270,26 @@ FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
 }
 
 }  // namespace
+
+std::vector<std::variant<SensorGroup, FloorGrid>> sensors_of(const TomlValue& root, const TomlFrame& frame) {
+  std::vector<std::variant<SensorGroup, FloorGrid>> all;
+  std::set<std::string> names;
+  for (const TomlValue& table : tables(find(root, "sensors"))) {
+    const TomlValue* const given = find(table, "name");
+    const std::string name = given ? text(*given) : "sensors " + std::to_string(all.size() + 1);
+    all.push_back(sensors_of_table(table, frame, name));
+    if (!names.insert(name).second) refuse(given ? *given : table, "a name that no other sensors have");
+  }
+  return all;
+}
+
+std::vector<std::filesystem::path> sensor_files(const TomlValue& root, const TomlFrame& frame) {
+  std::vector<std::filesystem::path> files;
+  for (const TomlValue& table : tables(find(root, "sensors"))) {
+    if (const TomlValue* const file = find(table, "file")) files.push_back(named_file(*file, frame));
+  }
+  return files;
+}
 
 Floor floor_of_polygons(const Scene& scene, const std::vector<PolygonIndex>& polygons,
                         const std::vector<Solid>& solids) {

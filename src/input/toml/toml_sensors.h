@@ -1,6 +1,6 @@
 #pragma once
 
-#include "input/toml/toml_models.h"
+#include "input/toml/toml_tables.h"
 #include "scene/sensor_grid.h"
 #include "scene/solids.h"
 

@@ -1,10 +1,10 @@
-#include "input/toml/toml_spectrum.h"
-
 #include "patchlight/base/error.h"
 
 #include "base/rounded.h"
-#include "input/tables/read_spectrum.h"
+#include "input/material_settings.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
+#include "input/toml/toml_tables.h"
 #include "light/spectra.h"
 #include "scene/spectral_bands.h"
 
@@ -23,7 +23,7 @@ bool names_file(const TomlValue& value) {
   return value.kind == TomlValue::Kind::text && !value.text.empty() && !is_name_of_light(value);
 }
 
-// A missing file is named with the line that asks for it, what is wrong in it with its own.
+// Messages name the line that asks for a missing file; for a fault in the file they name its own line.
 SampledSpectrum read_named(const TomlValue& value, const TomlFrame& frame) {
   const std::filesystem::path file = named_file(value, frame);
   std::error_code error;
@@ -43,18 +43,16 @@ std::shared_ptr<const SampledSpectrum> with_light(std::shared_ptr<const SampledS
 }
 
 std::shared_ptr<const SampledSpectrum> daylight_of(const TomlValue& value) {
-  const std::string expected = "the colour temperature of daylight, 4000 to 25000 K";
-  if (!(number(value, expected) >= coolest_daylight && value.number <= hottest_daylight)) refuse(value, expected);
-  return daylight_spectrum(value.number);
+  return daylight_spectrum(
+      within(value, coolest_daylight, hottest_daylight, "the colour temperature of daylight, 4000 to 25000 K"));
 }
 
 std::shared_ptr<const SampledSpectrum> of_temperature(const TomlValue& table) {
   allow_keys(table, {"kelvin", "daylight"});
-  const TomlValue& value = *find(table, one_of(table, {"kelvin", "daylight"}));
-  if (&value == find(table, "daylight")) return daylight_of(value);
-  const std::string expected = "the temperature of a black body, 500 to 100000 K";
-  if (!(number(value, expected) >= 500 && value.number <= 1e5)) refuse(value, expected);
-  return planckian_spectrum(value.number);
+  const std::string key = one_of(table, {"kelvin", "daylight"});
+  const TomlValue& value = *find(table, key);
+  if (key == "daylight") return daylight_of(value);
+  return planckian_spectrum(within(value, 500, 1e5, "the temperature of a black body, 500 to 100000 K"));
 }
 
 std::vector<double> edges_of(const TomlValue& value) {
@@ -66,12 +64,8 @@ std::vector<double> edges_of(const TomlValue& value) {
   return edges;
 }
 
-void add_files(std::vector<std::filesystem::path>& files, const TomlValue& table, const TomlFrame& frame,
-               const std::vector<std::string>& keys) {
-  for (const std::string& key : keys) {
-    const TomlValue* const value = find(table, key);
-    if (value && names_file(*value)) files.push_back(named_file(*value, frame));
-  }
+void add_file(std::vector<std::filesystem::path>& files, const TomlValue* value, const TomlFrame& frame) {
+  if (value != nullptr && names_file(*value)) files.push_back(named_file(*value, frame));
 }
 
 }  // namespace
@@ -134,11 +128,11 @@ std::optional<BandsAsked> bands_asked(const TomlValue& root) {
 
 std::vector<std::filesystem::path> spectrum_files(const TomlValue& root, const TomlFrame& frame) {
   std::vector<std::filesystem::path> files;
-  for (const TomlValue& table : tables(find(root, "material")))
-    add_files(files, table, frame,
-              {"reflectance", "specular_reflectance", "transmittance", "diffuse_transmittance", "exitance", "radiance",
-               "spectrum"});
-  for (const TomlValue& table : tables(find(root, "luminaire"))) add_files(files, table, frame, {"spectrum"});
+  for (const TomlValue& table : tables(find(root, "material"))) {
+    for (const auto& [key, quantity] : named_quantities)
+      if (quantity != MaterialSetting::Quantity::index) add_file(files, find(table, key), frame);
+  }
+  for (const TomlValue& table : tables(find(root, "luminaire"))) add_file(files, find(table, "spectrum"), frame);
   return files;
 }
 

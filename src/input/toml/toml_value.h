@@ -58,48 +58,24 @@ void allow_keys(const TomlValue& table, const std::vector<std::string>& keys);
 /// The tables of a list [[...]]; none for null. \throws InputError when it is something else.
 std::vector<TomlValue> tables(const TomlValue* list);
 
-/// The value as a finite number. \throws InputError; so do those below.
-double number(const TomlValue& value, const std::string& expected = "a number");
-
-/// The value as a number above 0, or not below 0.
+// The value as something. Each throws an InputError that states the expected form.
+double number(const TomlValue& value, const std::string& expected = "a number");  ///< finite
+double within(const TomlValue& value, double low, double high, const std::string& expected);
 double positive(const TomlValue& value);
 double not_negative(const TomlValue& value);
-
-/// The value as so many numbers.
 std::vector<double> numbers(const TomlValue& value, std::size_t count, const std::string& expected);
-
-/// The value as three numbers.
 Vector vector(const TomlValue& value);
+Vector direction(const TomlValue& value);   ///< three numbers that are not all zero, made a unit vector
+Spectrum spectrum(const TomlValue& value);  ///< one number not below 0, or three: R, G, B
 
-/// The value as three numbers that are not all zero, made a unit vector.
-Vector direction(const TomlValue& value);
-
-/// The value as one number not below 0, or three: R, G, B.
-Spectrum spectrum(const TomlValue& value);
-
-/// The value as a text that is not empty.
+/// The value as a text that is not empty, or as a list of them or one alone.
 std::string text(const TomlValue& value, const std::string& expected = "a text");
-
-/// The value as one such text, or a list of them.
 std::vector<std::string> texts(const TomlValue& value, const std::string& expected);
 
 /// The value as a path; relative ones start from the folder of `file`.
 std::filesystem::path path(const TomlValue& value, const std::filesystem::path& file);
 
-/// What one of several allowed words stands for.
-template <typename Value>
-Value choice(const TomlValue& value, const std::vector<std::pair<std::string, Value>>& allowed);
-
-/// The units of lengths, in metres.
-inline constexpr std::array<std::pair<const char*, double>, 5> units = {
-    {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
-
-/// The length of a unit in metres: m, cm, mm, in or ft.
-double unit_length(const TomlValue& value);
-
-/// The axis "y" or "z".
-Vector upright(const TomlValue& value);
-
+/// The value that one of several allowed words stands for.
 template <typename Value>
 Value choice(const TomlValue& value, const std::vector<std::pair<std::string, Value>>& allowed) {
   std::string words;
@@ -109,5 +85,15 @@ Value choice(const TomlValue& value, const std::vector<std::pair<std::string, Va
   }
   refuse(value, "one of " + words);
 }
+
+/// The units of lengths, in meters.
+inline constexpr std::array<std::pair<const char*, double>, 5> units = {
+    {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
+
+/// The length of a unit in meters: m, cm, mm, in or ft.
+double unit_length(const TomlValue& value);
+
+/// The axis "y" or "z".
+Vector upright(const TomlValue& value);
 
 }  // namespace patchlight

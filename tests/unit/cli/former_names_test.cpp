@@ -1,4 +1,4 @@
-#include "cli/former_names.h"
+#include "cli/option_names.h"
 
 #include <gtest/gtest.h>
 #include <string>

@@ -1,6 +1,6 @@
 #include "patchlight/input/read_scene.h"
 
-#include "input/mitsuba/mitsuba_spectrum.h"
+#include "input/mitsuba/mitsuba_file.h"
 #include "model_files.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // The same picture in every format that is read, and damaged ones of each.
 #include "input/picture_colours.h"
-#include "input/stb_picture.h"
 #include "light/texture.h"
 #include "model_files.h"
 

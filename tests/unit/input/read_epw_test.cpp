@@ -1,6 +1,6 @@
-#include "input/tables/read_epw.h"
-
 #include "patchlight/base/error.h"
+
+#include "input/tables/read_tables.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "input/tables/read_ies.h"
-
 #include "patchlight/base/error.h"
+
+#include "input/tables/read_tables.h"
 
 #include <cmath>
 #include <fstream>

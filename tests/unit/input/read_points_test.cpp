@@ -1,5 +1,4 @@
-#include "input/tables/read_points.h"
-
+#include "input/tables/read_tables.h"
 #include "model_files.h"
 
 namespace patchlight::read_points_test {

@@ -1,5 +1,4 @@
-#include "input/tables/read_spectrum.h"
-
+#include "input/tables/read_tables.h"
 #include "light/photometry.h"
 #include "model_files.h"
 

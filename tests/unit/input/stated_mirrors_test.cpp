@@ -1,8 +1,7 @@
 // Mirrors that model files state.
-#include "input/stated_mirrors.h"
-
 #include "patchlight/input/read_scene.h"
 
+#include "input/materials.h"
 #include "model_files.h"
 #include "room_files.h"
 #include "support/diagnostics_of.h"

@@ -1,8 +1,7 @@
 // Transparency that model files state.
-#include "input/stated_panes.h"
-
 #include "patchlight/input/read_scene.h"
 
+#include "input/materials.h"
 #include "light/pane.h"
 #include "model_files.h"
 #include "room_files.h"

@@ -1,4 +1,4 @@
-#include "input/collada/read_collada.h"
+#include "input/read_model.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/geometry.h"
 
+#include "input/radiance/radiance_text.h"
+
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -10,7 +12,12 @@
 
 namespace patchlight {
 
-/// What Radiance's xform does with the surfaces of files.
+/// The surfaces that Radiance's genbox prints for the words behind its name: "MATERIAL NAME X Y Z" and the options
+/// -b BEVEL, -r RADIUS and -i (fronts inward). The box reaches from the origin to (X, Y, Z). \throws InputError at
+/// `where`: an option is not known, a word is missing, or a length does not fit.
+std::vector<RadiancePrimitive> radiance_genbox(std::span<const std::string> arguments, const std::string& where);
+
+/// The transformation that Radiance's xform applies to the surfaces of files.
 struct RadianceXform {
   std::vector<Eigen::Affine3d> copies = {
       Eigen::Affine3d::Identity()};  ///< where each copy stands; lengths as in the file

@@ -1,17 +1,62 @@
 #pragma once
 
+#include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/scene.h"
 
+#include "input/left_out.h"
+
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace patchlight {
 
-/// What a material of an MTL file states of how it lets light through.
+/// A name in an OBJ file and the line it stands on.
+struct ObjName {
+  std::string name;
+  std::uint32_t line = 0;
+};
+
+/// Stands for a face before any usemtl.
+inline constexpr std::uint32_t no_material = ~std::uint32_t{0};
+
+/// Stands for a corner that names no picture point, or none that is there.
+inline constexpr std::uint32_t no_place = ~std::uint32_t{0};
+
+/// The facts of a face from its line and those above it.
+struct ObjFace {
+  std::uint32_t line = 0;
+  std::uint32_t material = no_material;  ///< index into ObjScan::materials
+  std::vector<std::uint32_t> corners;    ///< from 0, when there are more than tinyobjloader can count; else empty
+  std::size_t first_place = 0;           ///< index into ObjScan::places of its first corner
+};
+
+/// An OBJ file whose numbers and indices are known to be good.
+struct ObjScan {
+  std::vector<Point> vertices;                  ///< in model units
+  std::vector<ObjFace> faces;                   ///< in the file's order
+  std::vector<Eigen::Vector2d> picture_points;  ///< the vt statements, v from the bottom
+  std::vector<std::uint32_t> places;            ///< per corner of each face: a picture point, or no_place
+  std::vector<ObjName> materials;               ///< the names after usemtl, each once
+  std::vector<ObjName> libraries;               ///< what follows each mtllib
+  std::string geometry;  ///< the v, f, g and o statements alone, one per line; faces with vertices only, and
+                         ///< with the first three alone where ObjFace::corners has them all
+  LeftOut left_out;      ///< faces with fewer than 3 corners, lines, points and free-form surfaces
+  std::size_t colored_vertices = 0;  ///< v statements with a color after the coordinates
+};
+
+/// Checks the statements of an OBJ file that tinyobjloader takes on trust, and records where they stand.
+/// \throws InputError naming `file` and the line: a coordinate that is not a finite number, a corner that names no
+/// vertex.
+ObjScan scan_obj(std::string_view text, const std::string& file);
+
+/// The statements of an MTL material on its transparency.
 struct MtlTransparency {
   std::optional<double> dissolve;      ///< d: 1 is opaque
   std::optional<double> transparency;  ///< Tr: 0 is opaque
@@ -28,7 +73,7 @@ struct MtlPane {
   std::optional<Spectrum> reflectance{};  ///< where it has holes: what is left of the material's
 };
 
-/// The pane that a material is; nothing where it is opaque. d counts before Tr, and Tf colours what they let through.
+/// The pane that a material is; nothing where it is opaque. d counts before Tr, and Tf colors what they let through.
 /// Without both Tf alone counts with an illumination for glass, unless it is 1 in all bands, as programs write it for
 /// what is opaque.
 std::optional<MtlPane> mtl_pane(const MtlTransparency& stated);
@@ -36,7 +81,7 @@ std::optional<MtlPane> mtl_pane(const MtlTransparency& stated);
 /// True when d and Tr contradict each other about whether the material is opaque: some programs mean opacity by Tr.
 bool is_contradictory(const MtlTransparency& stated);
 
-/// What a material of an MTL file states of how it reflects light.
+/// The statements of an MTL material on its reflection.
 struct MtlReflection {
   Spectrum diffuse;                  ///< Kd
   std::optional<Spectrum> specular;  ///< Ks
@@ -82,8 +127,8 @@ struct MtlMaterial {
   bool has_ignored_mask = false;               ///< map_d has options that are not heeded; then it has no mask_picture
   bool has_mask = false;                       ///< the picture of map_d was read
   double covered = 1;                          ///< the share of the surface that map_d leaves
-  bool has_mean = false;                       ///< the mean colour of map_Kd is in the reflectance
-  std::optional<TexturedReflectance> texture;  ///< what it is the mean of, where that has more than one colour
+  bool has_mean = false;                       ///< the mean color of map_Kd is in the reflectance
+  std::optional<TexturedReflectance> texture;  ///< what it is the mean of, where that has more than one color
   std::optional<MtlPane> pane;                 ///< what d, Tr, Tf, Ni and illum make of it
   std::optional<MtlMirror> mirror;             ///< what Ks, Ns, Pr, Pm and illum make of it, unless it is a pane
   bool is_contradictory = false;               ///< d and Tr contradict each other

@@ -1,0 +1,152 @@
+#pragma once
+
+#include "cli/arguments.h"
+#include "cli/help_texts.h"
+#include "cli/parse_value.h"
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+// The options of commands that say which model is read and how it is solved, with the texts of help_texts.h. A name is
+// written as there: "--max-edge" or "-o,--output". Values land in structures that must outlive the command.
+namespace patchlight::cli {
+
+/// Adds an option with one value, which `take` accepts or refuses.
+template <typename Take>
+CLI::Option* add(CLI::App& command, const std::string& name, Take take) {
+  option_text(command.get_name(), name);  // it has one
+  return command.add_option_function<std::string>(name, take);
+}
+
+/// Adds an option whose value lands in `to`, parsed by a function of the option's short name and the text: length().
+template <typename To, typename Parse>
+CLI::Option* add(CLI::App& command, const std::string& name, To& to, Parse parse) {
+  return add(command, name, [&to, option = name.substr(0, name.find(',')), parse](const std::string& text) {
+    to = parse(option, text);
+  });
+}
+
+/// Adds an option with a whole number from `lower` to `upper`.
+template <typename To>
+CLI::Option* add_whole(CLI::App& command, const std::string& name, To& to, std::uint64_t lower, std::uint64_t upper) {
+  return add(command, name, to, [lower, upper](const std::string& option, const std::string& text) {
+    return static_cast<To>(whole_number(option, text, lower, upper));
+  });
+}
+
+/// Adds an option with one of several words, each of which stands for a value.
+template <typename Value, typename To>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, To& to,
+                        const std::vector<std::pair<std::string, Value>>& allowed) {
+  return add(command, name, to, [allowed](const std::string& option, const std::string& text) {
+    return choice<Value>(option, text, allowed);
+  });
+}
+
+/// Adds an option with a name, which is not empty: `expected` is "the name of a file" or of a folder.
+template <typename To>
+CLI::Option* add_name(CLI::App& command, const std::string& name, To& to, const std::string& expected) {
+  return add(command, name, to, [expected](const std::string& option, const std::string& text) {
+    if (text.empty()) throw refusal(option, text, expected);
+    return text;
+  });
+}
+
+/// Adds an option that may be repeated; its values land in `values`.
+inline CLI::Option* add_list(CLI::App& command, const std::string& name, std::vector<std::string>& values) {
+  option_text(command.get_name(), name);
+  return command.add_option(name, values)->allow_extra_args(name[0] != '-');
+}
+
+/// Adds an option without a value, which makes `to` `value`.
+inline CLI::Option* add_flag(CLI::App& command, const std::string& name, bool& to, bool value = true) {
+  option_text(command.get_name(), name);
+  return command.add_flag_callback(name, [&to, value] { to = value; });
+}
+
+/// Checks the options of a command after they were parsed, and returns the request. \throws UsageError, InputError.
+using Finish = std::function<Arguments()>;
+
+/// Each adds a command with its options to the tool.
+Finish add_check(CLI::App& tool);
+Finish add_init(CLI::App& tool);
+Finish add_solve(CLI::App& tool);
+Finish add_render(CLI::App& tool);
+Finish add_plan(CLI::App& tool);
+Finish add_crosscheck(CLI::App& tool);
+Finish add_relight(CLI::App& tool);
+Finish add_form_factors(CLI::App& tool);
+Finish add_compare_solvers(CLI::App& tool);
+Finish add_convergence(CLI::App& tool);
+Finish add_selftest(CLI::App& tool);
+
+/// The options that say which model is read and how, while they are being parsed.
+struct ModelOptions {
+  std::vector<std::string> models, settings;
+  std::string bands;
+  std::optional<double> color_error;
+  ReadOptions read;                 ///< but for settings and bands
+  bool max_edge_in_metres = false;  ///< --max-edge has a unit of its own; else it is in units of the model
+};
+
+/// Adds the arguments that name the files and their units.
+void add_file_options(CLI::App& command, ModelOptions& options);
+
+/// The same, and the options that change the model: materials, choice of faces, daylight.
+void add_model_options(CLI::App& command, ModelOptions& options);
+
+/// Adds --set, --up, --sky, --sun, --ground and --weather.
+void add_light_options(CLI::App& command, ModelOptions& options);
+
+/// Takes the model files and how they are read. \throws UsageError when a model is given twice, or InputError when a
+/// --set cannot be understood.
+void take_model(const ModelOptions& options, ModelArguments& arguments);
+
+/// The same, and the longest edge in meters.
+void take_model(const ModelOptions& options, RunArguments& arguments);
+
+/// Adds --sides.
+template <typename To>
+void add_sides_option(CLI::App& command, To& sides) {
+  add_choice<Sides>(command, "--sides", sides,
+                    {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
+}
+
+void add_patch_options(CLI::App& command, ModelOptions& options, Request& request);  ///< --max-edge, --patches, ...
+void add_graded_option(CLI::App& command, Request& request);       ///< not where meshes are halved from one to the next
+void add_refinement_options(CLI::App& command, Request& request);  ///< --accuracy, --time-limit, --focus, --no-refine
+void add_accuracy_options(CLI::App& command, Request& request);    ///< the same and error bars: cheap ones if not given
+/// --method and --rays. Form factors that are stored are made by pairs or rays.
+void add_method_options(CLI::App& command, Request& request, bool stored = false);
+
+/// Where no solver is given, one that fits the method; where one is that the ray method does not serve, the pair method
+/// unless another method is given.
+Request with_fitting_solver(Request request, bool solver_given);
+
+void add_closure_option(CLI::App& command, Request& request);
+void add_relaxation_option(CLI::App& command, std::optional<double>& relaxation);
+
+/// Adds --tolerance, from `least` (0: above 0) to below 1.
+template <typename To>
+void add_tolerance_option(CLI::App& command, double least, To& to) {
+  add(command, "--tolerance", to,
+      [least](const std::string& option, const std::string& text) { return tolerance(option, text, least); });
+}
+
+void add_sampling_options(CLI::App& command, Request& request);  ///< --samples, --estimator and --seed
+
+/// All effects that a command can enable or disable but these. Closure has an option of its own, --no-closure.
+std::vector<Effect> effects_but(const std::vector<Effect>& without);
+
+/// Adds --enable and --disable for these effects.
+void add_effect_options(CLI::App& command, Request& request, const std::vector<Effect>& effects);
+
+void add_threads_option(CLI::App& command, int& threads);
+void add_machine_options(CLI::App& command, Request& request);  ///< --threads and --memory
+void add_quiet_option(CLI::App& command, bool& quiet);
+
+}  // namespace patchlight::cli
