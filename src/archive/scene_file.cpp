@@ -2,7 +2,6 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
-#include "patchlight/output/provenance.h"
 #include "patchlight/output/write_result.h"
 #include "patchlight/scene/scene.h"
 

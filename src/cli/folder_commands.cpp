@@ -11,10 +11,9 @@
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
-#include "output/report/write_comparison.h"
 #include "output/report/write_study.h"
 #include "page/write_page.h"
-#include "study/price.h"
+#include "study/study.h"
 
 #include <algorithm>
 #include <cmath>

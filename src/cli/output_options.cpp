@@ -6,8 +6,6 @@
 #include "base/rounded.h"
 #include "cli/options.h"
 #include "output/image/write_image.h"
-#include "output/image/write_lightmap.h"
-#include "output/vtk/write_points.h"
 #include "output/vtk/write_vtk.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "cli/render.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/output/write_image.h"
+#include "patchlight/output/write_result.h"
 #include "patchlight/views/views.h"
 
 #include "accuracy/spaces.h"
@@ -19,7 +19,7 @@
 #include "output/image/write_image.h"
 #include "page/write_page.h"
 #include "pipeline/world.h"
-#include "render/lens.h"
+#include "render/camera.h"
 #include "scene/extent.h"
 
 #include <algorithm>

@@ -16,7 +16,6 @@
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
-#include "output/image/write_lightmap.h"
 #include "output/plot/write_sensor_map.h"
 #include "output/vtk/write_vtk.h"
 #include "page/write_page.h"

@@ -4,7 +4,7 @@
 
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "lighting/lamp_faces.h"
+#include "lighting/lighting.h"
 #include "lighting/mirrored_irradiance.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"

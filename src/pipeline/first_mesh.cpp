@@ -4,7 +4,6 @@
 
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "visibility/occluder.h"

@@ -4,8 +4,6 @@
 #include "base/rounded.h"
 #include "base/sampling.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
-#include "pipeline/error_goals.h"
 #include "plan/goal.h"
 #include "plan/memory.h"
 

@@ -6,7 +6,6 @@
 #include "light/texture.h"
 #include "lighting/mirrored_irradiance.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 

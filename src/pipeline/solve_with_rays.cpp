@@ -5,9 +5,9 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "base/vectors.h"
-#include "form_factor/patch_keys.h"
+#include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
-#include "mesh/small_patches.h"
+#include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
 #include "transport/smoothing.h"
 

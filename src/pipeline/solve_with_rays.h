@@ -4,7 +4,7 @@
 
 #include "pipeline/exchange_and_light.h"
 #include "solve/pockets.h"
-#include "solve/solved_bands.h"
+#include "solve/scattering.h"
 
 #include <Eigen/Core>
 #include <array>

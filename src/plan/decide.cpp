@@ -2,10 +2,10 @@
 
 #include "light/texture.h"
 #include "plan/survey.h"
-#include "scene/all_spectra.h"
 #include "scene/model_face.h"
+#include "scene/photometric_web.h"
 #include "scene/solids.h"
-#include "scene/transmittance.h"
+#include "scene/specular_faces.h"
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>

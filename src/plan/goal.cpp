@@ -6,7 +6,6 @@
 #include "base/streams.h"
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "plan/survey.h"
 #include "scene/coverings.h"
 #include "visibility/occluder.h"

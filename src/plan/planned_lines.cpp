@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/tolerances.h"
 #include "mesh/mesher.h"
-#include "plan/shadow_lines.h"
 #include "plan/survey.h"
 #include "scene/extent.h"
 #include "visibility/occluder.h"

@@ -6,7 +6,6 @@
 #include "base/rounded.h"
 #include "base/tolerances.h"
 #include "light/photometry.h"
-#include "plan/first_few.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"

@@ -1,10 +1,10 @@
 #include "render/camera.h"
 
 #include "patchlight/base/error.h"
+#include "patchlight/scene/scene.h"
 
 #include "base/sampling.h"
 #include "base/tolerances.h"
-#include "scene/projection.h"
 #include "scene/triangulate.h"
 
 #include <algorithm>

@@ -3,10 +3,8 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
-#include "form_factor/patch_keys.h"
 #include "form_factor/patch_shape.h"
 #include "mesh/nested_mesh.h"
-#include "mesh/small_patches.h"
 #include "transport/sights.h"
 #include "visibility/occluder.h"
 

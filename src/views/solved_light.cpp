@@ -4,11 +4,9 @@
 #include "patchlight/views/views.h"
 
 #include "light/photometry.h"
-#include "lighting/lamp_faces.h"
 #include "lighting/lighting.h"
 #include "lighting/sky.h"
 #include "pipeline/exchange_and_light.h"
-#include "pipeline/lamps_apart.h"
 #include "pipeline/world.h"
 #include "render/render.h"
 #include "visibility/occluder.h"
