@@ -327,7 +327,7 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
 }
 
 // The polygons' own meshes, and where each kept side goes in the whole.
-struct Pieces {
+struct MeshedPieces {
   std::vector<Outline> outlines;
   std::vector<PolygonMesh> meshes;           // per polygon; empty when no side is kept
   std::vector<std::uint32_t> first_inner;    // per 2 * polygon + side: its first inner vertex
@@ -336,13 +336,13 @@ struct Pieces {
 
 bool is_kept(const KeptSides& sides, std::size_t slot) { return (slot % 2 == 0 ? sides.front : sides.back)[slot / 2]; }
 
-Pieces make_pieces(const Scene& scene, const KeptSides& sides, const PatchEdges& edges, const ContactLines& contacts,
-                   bool grade) {
+MeshedPieces make_pieces(const Scene& scene, const KeptSides& sides, const PatchEdges& edges,
+                         const ContactLines& contacts, bool grade) {
   const std::size_t count = scene.polygons.size();
-  Pieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, edges), edges),
-                .meshes = std::vector<PolygonMesh>(count),
-                .first_inner = {},
-                .boundary = {}};
+  MeshedPieces pieces{.outlines = cut_outlines(cut_polygons(scene, find_loose_corners(scene), contacts, edges), edges),
+                      .meshes = std::vector<PolygonMesh>(count),
+                      .first_inner = {},
+                      .boundary = {}};
   if (grade) pieces.outlines = graded(std::move(pieces.outlines), sides);
   parallel_for(count, [&](std::size_t p) {
     if (sides.front[p] || sides.back[p]) pieces.meshes[p] = mesh_polygon(pieces.outlines[p], edges.on(p));
@@ -353,7 +353,7 @@ Pieces make_pieces(const Scene& scene, const KeptSides& sides, const PatchEdges&
 }
 
 // Vertices: the boundaries' of the front sides, those of the back sides, then the inner ones slot by slot.
-void number_slots(PatchMesh& mesh, Pieces& pieces, const KeptSides& sides) {
+void number_slots(PatchMesh& mesh, MeshedPieces& pieces, const KeptSides& sides) {
   std::size_t vertices = pieces.boundary[0].points.size() + pieces.boundary[1].points.size();
   std::size_t patches = 0;
   for (std::size_t slot = 0; slot < 2 * pieces.meshes.size(); ++slot) {
@@ -381,7 +381,7 @@ std::array<std::uint32_t, 4> reversed(const std::array<std::uint32_t, 4>& corner
 }
 
 // Writes the inner vertices and the patches of one kept side of a polygon.
-void fill_slot(PatchMesh& mesh, const Scene& scene, const Pieces& pieces, std::size_t slot) {
+void fill_slot(PatchMesh& mesh, const Scene& scene, const MeshedPieces& pieces, std::size_t slot) {
   const std::size_t p = slot / 2;
   const bool back = slot % 2 == 1;
   const Side side = back ? Side::back : Side::front;
@@ -430,7 +430,7 @@ PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdge
   assert(edges.max_edge > 0 && sides.front.size() == scene.polygons.size() &&
          sides.back.size() == scene.polygons.size());
   require_so_many_patches(scene, sides, edges);
-  Pieces pieces = make_pieces(scene, sides, edges, contacts, graded_edges);
+  MeshedPieces pieces = make_pieces(scene, sides, edges, contacts, graded_edges);
   PatchMesh mesh;
   number_slots(mesh, pieces, sides);
   const auto& [front, back] = pieces.boundary;

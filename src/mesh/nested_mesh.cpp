@@ -39,7 +39,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller index firs
 
 Edge edge_of(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
-std::vector<Edge> edges_of(const PatchMesh& mesh, PatchIndex patch) {
+std::vector<Edge> patch_edges(const PatchMesh& mesh, PatchIndex patch) {
   const std::span<const std::uint32_t> corners = corner_vertices(mesh, patch);
   std::vector<Edge> edges;
   for (std::size_t k = 0; k < corners.size(); ++k)
@@ -94,7 +94,7 @@ std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::u
   std::set<Edge> to_cut;
   const auto mark = [&](PatchIndex patch) {
     all[patch] = 1;
-    for (const Edge& edge : edges_of(mesh, patch)) to_cut.insert(edge);
+    for (const Edge& edge : patch_edges(mesh, patch)) to_cut.insert(edge);
   };
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     if (all[i]) mark(i);
@@ -102,7 +102,7 @@ std::vector<std::uint8_t> balanced(const PatchMesh& mesh, std::span<const std::u
   for (bool changed = true; changed;) {
     changed = false;
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
-      if (all[i] || !has_quarters(edges_of(mesh, i), middles, to_cut)) continue;
+      if (all[i] || !has_quarters(patch_edges(mesh, i), middles, to_cut)) continue;
       mark(i);
       if (!other_side.empty()) mark(other_side[i]);
       changed = true;

@@ -3,8 +3,8 @@
 #include "light/texture.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
-#include "scene/photometric_web.h"
 #include "scene/solids.h"
+#include "scene/spectral_bands.h"
 #include "scene/specular_faces.h"
 #include "visibility/flat_polygon.h"
 

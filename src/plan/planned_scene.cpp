@@ -2,7 +2,7 @@
 
 #include "base/tolerances.h"
 #include "light/photometry.h"
-#include "scene/photometric_web.h"
+#include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <cmath>

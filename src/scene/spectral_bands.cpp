@@ -17,39 +17,7 @@
 namespace patchlight {
 namespace {
 
-// Calls visit(values, const SampledSpectrum*) for all reflectances and transmittances of a scene, const or not, that
-// are not empty, with their spectra by wavelength or null.
-void visit_shares(auto& scene, const auto& visit) {
-  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
-    if (values.size() > 0) visit(values, spectrum);
-  };
-  for (auto& material : scene.materials) {
-    const MaterialSpectra& spectra = material.spectra;
-    each(material.reflectance, spectra.reflectance.get());
-    each(material.transmittance, spectra.transmittance.get());
-    each(material.specular_reflectance, spectra.specular_reflectance.get());
-    each(material.diffuse_transmittance, spectra.diffuse_transmittance.get());
-    if (material.stated_pane) each(material.stated_pane->matt_reflectance, spectra.reflectance.get());
-    if (material.stated_mirror) each(material.stated_mirror->matt_reflectance, spectra.reflectance.get());
-    if (!material.texture) continue;
-    for (auto& values : material.texture->of_primaries) each(values, nullptr);
-  }
-}
-
-// The same for all light sources.
-void visit_lights(auto& scene, const auto& visit) {
-  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
-    if (values.size() > 0) visit(values, spectrum);
-  };
-  for (auto& material : scene.materials) each(material.exitance, material.spectra.light.get());
-  for (auto& luminaire : scene.luminaires) each(strength_of(luminaire), luminaire.spectrum.get());
-  if (scene.sun) each(scene.sun->normal_irradiance, scene.sun->spectrum.get());
-  if (!scene.sky) return;
-  for (auto* values : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
-    each(*values, scene.sky->spectrum.get());
-}
-
-// The same with the exitance of surfaces that emit less as panes.
+// visit_lights() with the exitance of surfaces that emit less as panes.
 void visit_stated_lights(Scene& scene, const auto& visit) {
   visit_lights(scene, visit);
   for (Material& material : scene.materials) {

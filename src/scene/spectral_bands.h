@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "light/spectra.h"
+#include "scene/photometric_web.h"
 
 #include <Eigen/Core>
 #include <functional>
@@ -49,6 +50,38 @@ Cells share_in_cells(const Spectrum& rgb, const SampledSpectrum* spectrum);
 
 /// How all lights of a scene in linear RGB are spread, a luminance of 1 each; of several alike one.
 std::vector<Cells> spread_of_lights(const Scene& scene);
+
+/// Calls visit(values, const SampledSpectrum*) for all reflectances and transmittances of a scene, const or not, that
+/// are not empty, with their spectra by wavelength or null.
+void visit_shares(auto& scene, const auto& visit) {
+  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
+    if (values.size() > 0) visit(values, spectrum);
+  };
+  for (auto& material : scene.materials) {
+    const MaterialSpectra& spectra = material.spectra;
+    each(material.reflectance, spectra.reflectance.get());
+    each(material.transmittance, spectra.transmittance.get());
+    each(material.specular_reflectance, spectra.specular_reflectance.get());
+    each(material.diffuse_transmittance, spectra.diffuse_transmittance.get());
+    if (material.stated_pane) each(material.stated_pane->matt_reflectance, spectra.reflectance.get());
+    if (material.stated_mirror) each(material.stated_mirror->matt_reflectance, spectra.reflectance.get());
+    if (!material.texture) continue;
+    for (auto& values : material.texture->of_primaries) each(values, nullptr);
+  }
+}
+
+/// The same for all light sources.
+void visit_lights(auto& scene, const auto& visit) {
+  const auto each = [&](auto& values, const SampledSpectrum* spectrum) {
+    if (values.size() > 0) visit(values, spectrum);
+  };
+  for (auto& material : scene.materials) each(material.exitance, material.spectra.light.get());
+  for (auto& luminaire : scene.luminaires) each(strength_of(luminaire), luminaire.spectrum.get());
+  if (scene.sun) each(scene.sun->normal_irradiance, scene.sun->spectrum.get());
+  if (!scene.sky) return;
+  for (auto* values : {&scene.sky->horizontal_irradiance, &scene.sky->zenith_radiance, &scene.sky->ground_radiance})
+    each(*values, scene.sky->spectrum.get());
+}
 
 /// A visitor of a quantity with a value for each band: its values, and its spectrum or null.
 using OfQuantity = std::function<void(const Spectrum& values, const SampledSpectrum* spectrum)>;
