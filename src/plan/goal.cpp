@@ -93,21 +93,40 @@ class Sources {
 
 double mean_of(const Spectrum& spectrum) { return spectrum.size() > 0 ? spectrum.mean() : 0; }
 
-// The particle after a hit, or none where it is absorbed. Mirrors scatter like matt faces, because importance steers
-// effort alone.
-std::optional<Particle> scattered(const Scene& scene, const Hit& hit, const Particle& before, bool is_goal,
-                                  std::uint32_t key) {
+// How a polygon scatters particles. Mirrors scatter like matt faces, because importance steers effort alone.
+struct Scatterer {
+  Vector front;
+  bool is_goal = false;
+  bool is_opening = false;
+  std::array<double, 2> reflected = {};    // shares, per side: front, back
+  std::array<double, 2> transmitted = {};  // likewise
+};
+
+std::vector<Scatterer> scatterers_of(const Scene& scene, const std::vector<std::uint8_t>& is_goal) {
+  std::vector<Scatterer> all;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    Scatterer face{front_normal(scene, p), is_goal[p] != 0, is_opening(scene, p)};
+    for (const Side side : {Side::front, Side::back}) {
+      const Material& material = scene.materials[material_on(scene.polygons[p], side)];
+      const auto s = static_cast<std::size_t>(side);
+      face.reflected[s] = mean_of(material.reflectance) + mean_of(material.specular_reflectance);
+      face.transmitted[s] = mean_of(material.diffuse_transmittance);
+    }
+    all.push_back(face);
+  }
+  return all;
+}
+
+// The particle after a hit, or none where it is absorbed.
+std::optional<Particle> scattered(const Scatterer& face, const Hit& hit, const Particle& before, std::uint32_t key) {
   const auto uniform = [&](std::uint32_t k) { return (hash({key, k}) + 0.5) * 0x1p-32; };
-  const Polygon& polygon = scene.polygons[hit.polygon];
-  if (is_opening(scene, hit.polygon)) return Particle{{hit.point, before.ray.direction, hit.polygon}, before.has_left};
-  const Material& material = scene.materials[material_on(polygon, hit.side)];
-  const double back = mean_of(material.reflectance) + mean_of(material.specular_reflectance);
+  if (face.is_opening) return Particle{{hit.point, before.ray.direction, hit.polygon}, before.has_left};
+  const auto side = static_cast<std::size_t>(hit.side);
   const double drawn = uniform(0);
-  if (drawn >= back + mean_of(material.diffuse_transmittance)) return {};
-  const Vector front = front_normal(scene, hit.polygon);
-  const bool leaves_front = (hit.side == Side::front) == (drawn < back);
-  const Vector direction = cosine_direction(leaves_front ? front : Vector(-front), uniform(1), uniform(2));
-  return Particle{{hit.point, direction, hit.polygon}, before.has_left || !is_goal};
+  if (drawn >= face.reflected[side] + face.transmitted[side]) return {};
+  const bool leaves_front = (hit.side == Side::front) == (drawn < face.reflected[side]);
+  const Vector direction = cosine_direction(leaves_front ? face.front : Vector(-face.front), uniform(1), uniform(2));
+  return Particle{{hit.point, direction, hit.polygon}, before.has_left || !face.is_goal};
 }
 
 // Particles that arrive in the surroundings, and the number that leave the scene without meeting these.
@@ -117,8 +136,8 @@ struct Arrived {
   std::size_t escaped = 0;
 };
 
-void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
-                 std::vector<Particle> particles, std::uint32_t seed, Arrived& arrived) {
+void trace_batch(const Occluder& faces, const std::vector<Scatterer>& scatterers, std::vector<Particle> particles,
+                 std::uint32_t seed, Arrived& arrived) {
   for (std::uint32_t bounce = 0; bounce < 16 && !particles.empty(); ++bounce) {
     std::vector<Ray> rays;
     for (const Particle& particle : particles) rays.push_back(particle.ray);
@@ -130,14 +149,13 @@ void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<st
         continue;
       }
       const Hit& hit = *hits[k];
-      const bool is_in_goal = is_goal[hit.polygon] != 0;
-      if (!is_in_goal && !is_opening(scene, hit.polygon)) {
-        const Material& material = scene.materials[material_on(scene.polygons[hit.polygon], hit.side)];
-        arrived.reflected += mean_of(material.reflectance) + mean_of(material.specular_reflectance);
+      const Scatterer& face = scatterers[hit.polygon];
+      if (!face.is_goal && !face.is_opening) {
+        arrived.reflected += face.reflected[static_cast<std::size_t>(hit.side)];
         arrived.hits.push_back({{hit.polygon, hit.side, hit.point}, hit.distance > 0 ? 1 / hit.distance : 0});
       }
       const std::uint32_t key = hash({seed, bounce, k});
-      if (auto particle = scattered(scene, hit, particles[k], is_in_goal, key)) next.push_back(*particle);
+      if (auto particle = scattered(face, hit, particles[k], key)) next.push_back(*particle);
     }
     particles = std::move(next);
   }
@@ -146,12 +164,13 @@ void trace_batch(const Scene& scene, const Occluder& faces, const std::vector<st
 // Particles start in batches, until enough of them have arrived in the surroundings, or many batches have started.
 Arrived trace_importance(const Scene& scene, const Occluder& faces, const std::vector<std::uint8_t>& is_goal,
                          const Sources& sources, std::uint64_t seed) {
+  const std::vector<Scatterer> scatterers = scatterers_of(scene, is_goal);
   Arrived arrived;
   for (std::uint32_t batch = 0; batch < 12 && arrived.hits.size() < 1 << 13; ++batch) {
     const std::uint32_t key = hash({seed, batch, stream::goal_batch});
     std::vector<Particle> particles;
     for (const auto& u : scrambled_sobol(1 << 14, key)) particles.push_back(sources.at(u));
-    trace_batch(scene, faces, is_goal, std::move(particles), key, arrived);
+    trace_batch(faces, scatterers, std::move(particles), key, arrived);
   }
   return arrived;
 }

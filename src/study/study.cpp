@@ -55,7 +55,7 @@ StudySetting setting_of(const Simulation& simulation) {
 }
 
 // The finest setting, solved to several tolerances on one matrix.
-struct Tolerances {
+struct StudyTolerances {
   std::vector<Simulation> runs;  // from loose to tight; the last one is the finest setting
   Field exact;                   // radiosity, to a hundredth of the last tolerance
 };
@@ -101,21 +101,21 @@ StudySweep sweep_samples(const Experiment& experiment, const Reference& referenc
   return sweep;
 }
 
-StudySweep sweep_tolerances(const Tolerances& tolerances, const Reference& reference) {
+StudySweep sweep_tolerances(const StudyTolerances& tolerances, const Reference& reference) {
   StudySweep sweep{"tolerance", Swept::tolerance, {}};
   for (const Simulation& run : tolerances.runs) sweep.settings.push_back(judged(run, reference, tolerances.exact));
   return sweep;
 }
 
 // Solves to 0.1, 0.01, ... down to the tolerance of the request.
-Tolerances solve_to_tolerances(const Experiment& experiment) {
+StudyTolerances solve_to_tolerances(const Experiment& experiment) {
   struct Run {
     double tolerance;
     Solution solution;
     StageCost cost;
   };
   std::vector<Run> runs;
-  Tolerances result;
+  StudyTolerances result;
   const SolveWith solve_all = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                   const SolverOptions& usual, const Observer& watch) {
     SolverOptions options = usual;
@@ -145,7 +145,7 @@ Tolerances solve_to_tolerances(const Experiment& experiment) {
 // One quantity at a time. Sizes are swept with the usual samples, and with four times as many: there the error of the
 // mesh is seen to fall; that is the second sweep.
 std::vector<StudySweep> competing_sweeps(const Experiment& experiment, const Reference& reference,
-                                         const Tolerances& tolerances) {
+                                         const StudyTolerances& tolerances) {
   const Simulation& finest = tolerances.runs.back();
   StudySweep by_samples = sweep_samples(experiment, reference, finest);
   StudySweep usual = sweep_sizes(experiment, reference, judged(finest, reference));
@@ -342,7 +342,7 @@ Study study(const Scene& scene, const Request& request, const StudyOptions& opti
   check_for_study(request);
   // 1. The finest setting of the sweeps, and what all are judged by.
   const Experiment experiment = experiment_for(scene, request, options.sizes, observer);
-  const Tolerances tolerances = solve_to_tolerances(experiment);
+  const StudyTolerances tolerances = solve_to_tolerances(experiment);
   const Simulation& finest = tolerances.runs.back();
   Study result;
   result.plan = finest.plan;
