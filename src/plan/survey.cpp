@@ -185,11 +185,13 @@ Diagnostics problems_with_luminaires(const Scene& scene) {
 constexpr double smallest_plausible = 0.4;
 constexpr double largest_plausible = 150;
 
-// Of a site one side is short: the height of its buildings or its terrain. Sides below a hundredth are flat.
+// One side of a site is short: the height of its buildings or terrain, 30 m, or of towers in a site ten times as wide.
+// Sides below a hundredth are flat.
 bool is_plausible(const Vector& sides) {
   const double longest = sides.maxCoeff();
   if (longest <= largest_plausible) return longest >= smallest_plausible;
-  return std::any_of(sides.begin(), sides.end(), [&](double side) { return side > 0.01 * longest && side <= 30; });
+  const double highest = std::max(30.0, std::min(100.0, 0.1 * longest));
+  return std::any_of(sides.begin(), sides.end(), [&](double side) { return side > 0.01 * longest && side <= highest; });
 }
 
 struct Unit {

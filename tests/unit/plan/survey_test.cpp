@@ -70,13 +70,13 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
 }
 
 TEST(Survey, DoubtsNoUnitOfASiteWithBuildingsOfSomeHeight) {
-  const auto on_lawn = [](double scale) {
+  const auto on_lawn = [](double scale, double far) {
     const Scene room = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(scale)));
-    const double far = 80 * scale;
     return with_polygon(room, {Point(-far, -far, 0), Point(far, -far, 0), Point(far, far, 0), Point(-far, far, 0)});
   };
-  EXPECT_FALSE(has(survey_of(on_lawn(1)), DiagnosticCode::implausible_size));
-  EXPECT_TRUE(has(survey_of(on_lawn(100)), DiagnosticCode::implausible_size));
+  EXPECT_FALSE(has(survey_of(on_lawn(1, 80)), DiagnosticCode::implausible_size));
+  EXPECT_FALSE(has(survey_of(on_lawn(20, 2000)), DiagnosticCode::implausible_size)) << "towers in a site of 4 km";
+  EXPECT_TRUE(has(survey_of(on_lawn(100, 8000)), DiagnosticCode::implausible_size));
 }
 
 TEST(Survey, DoubtsNoUnitThatTheFileStates) {
