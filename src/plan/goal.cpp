@@ -22,7 +22,7 @@ namespace {
 double width_of(const Scene& scene, PolygonIndex polygon) {
   Box box;
   for (const Point& corner : corner_points(scene, polygon)) box.extend(corner);
-  return area_of(scene, polygon) / box.diagonal().norm();
+  return polygon_area(scene, polygon) / box.diagonal().norm();
 }
 
 // Some patches on each large polygon, and at least one on each other.

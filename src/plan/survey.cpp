@@ -255,7 +255,7 @@ std::vector<MaterialFacts> facts_of_materials(const Scene& scene) {
   };
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Polygon& polygon = scene.polygons[p];
-    const double area = area_of(scene, p);
+    const double area = polygon_area(scene, p);
     add(polygon.material, area);
     if (polygon.back_material) add(*polygon.back_material, area);
   }
@@ -282,7 +282,7 @@ std::vector<ObjectFacts> facts_of_objects(const Scene& scene) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     ObjectFacts& facts = all[scene.polygons[p].group];
     ++facts.faces;
-    facts.area += area_of(scene, p);
+    facts.area += polygon_area(scene, p);
   }
   std::erase_if(all, [](const ObjectFacts& facts) { return facts.faces == 0; });
   return largest_first(std::move(all));
@@ -303,6 +303,12 @@ std::vector<ObjectFacts> by_class(const std::vector<ObjectFacts>& objects) {
 }
 
 }  // namespace
+
+double area_of_faces(const Scene& scene) {
+  double area = 0;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) area += polygon_area(scene, p);
+  return area;
+}
 
 bool is_name_of_lamp(const std::string& name) {
   const std::vector<std::string> words = words_of(name);

@@ -19,8 +19,7 @@ bool is_name_of_lamp(const std::string& name);
 /// "a, b, c" of up to `few` names, "and 3 more" of the rest.
 std::string first_few(std::span<const std::string> names, std::size_t few = 8);
 
-/// The area of a polygon, and of all polygons, each once, m^2.
-double area_of(const Scene& scene, PolygonIndex polygon);
+/// The area of all polygons, each once, m^2.
 double area_of_faces(const Scene& scene);
 
 /// What lights a scene in which nothing emits.
