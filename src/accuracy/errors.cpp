@@ -478,7 +478,7 @@ std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTranspo
   for (std::uint64_t draw = 0; draw < draws; ++draw) {
     Field error = standard_error;
     for (PatchIndex i = 0; i < mesh.size(); ++i)
-      if ((hash({seed, keys[i], draw, stream::signs_of_mesh}) & 1) != 0) error.row(i) *= -1;
+      if ((hash({seed, keys[i], draw, stream::signs_of_direct_light}) & 1) != 0) error.row(i) *= -1;
     followed_draws.push_back(followed(transport, problem, error));
   }
   return followed_draws;

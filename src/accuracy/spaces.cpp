@@ -8,6 +8,7 @@
 #include "base/streams.h"
 #include "base/tolerances.h"
 #include "base/vectors.h"
+#include "form_factor/patch_shape.h"
 #include "scene/room_body.h"
 #include "scene/shells.h"
 #include "scene/solids.h"
@@ -72,14 +73,14 @@ Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, cons
   // Of very many patches only those at a space's border are less sure with fewer walks.
   const std::uint32_t walks = mesh.size() > 50000 ? 4 : usual_walks;
   std::vector<double> face_area;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    face_area.push_back(area_vector(corner_points(scene, p)).norm());
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) face_area.push_back(polygon_area(scene, p));
+  const std::vector<std::uint32_t> keys = patch_keys(mesh);
   Eigen::VectorXd enclosed(mesh.size());
   parallel_for(mesh.size(), [&](std::size_t k) {
     const auto patch = static_cast<PatchIndex>(k);
     const PolygonIndex polygon = mesh.polygon[patch];
     const FacingPlace place{mesh.centroid[patch], mesh.normal[patch], polygon};
-    enclosed[patch] = is_enclosed(scene, faces, place, k, face_area[polygon], walks) ? 1 : 0;
+    enclosed[patch] = is_enclosed(scene, faces, place, keys[patch], face_area[polygon], walks) ? 1 : 0;
   });
   return enclosed;
 }

@@ -18,7 +18,8 @@ enum Stream : std::uint64_t {
   later_meshes = 0x2d5,
   signs_of_rows = 0x64726177,
   signs_of_lights,
-  signs_of_mesh = 2,
+  signs_of_direct_light = 2,
+  signs_of_row_sums = 0x726f77,
 
   // Light in mirrors: shared points, and the shift of each receiver or sensor
   points_of_mirror_chains = 7,
@@ -33,6 +34,7 @@ enum Stream : std::uint64_t {
   halves_of_quarters = 0x9a7,
 
   // Pictures and lightmaps
+  pixel_sequence = 0x70697873,
   pixel_places = 1,
   gather_without_record = 2,
   lights_of_pixel = 3,
@@ -60,13 +62,20 @@ enum Stream : std::uint64_t {
   path_starts = 0,
   exposed_points = 1,
   path_order = 4,
-  path_vertices = 6,
+  path_luminaire = 5,
+  path_vertices = 6,  // and the three after it
+  pane_or_reflection = 6,
+  path_survives = 10,
   mirror_jitter = 11,
   mirror_order,
   mirror_luminaire,
   mirror_chain,
   path_seeds = 0x70617468,
+  next_mirror = 1,
+  side_of_next_mirror = 2,
   mirror_tests = 0x74657374,
+  compared_left_out = 0x6c656674,
+  compared_patches = 0x63686f6f7365,
   repeated_comparison = 0x61676169,
 };
 

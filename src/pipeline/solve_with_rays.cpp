@@ -203,13 +203,12 @@ Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const Patc
 
 // Both halves are scaled to the same row sums, so that their difference does not show the error of these: it is added
 // to one half of each patch, by a hash of its key, and taken from the other.
-constexpr std::uint32_t of_row_sums = 0x726f77;
 std::array<Field, 2> with_errors_of_row_sums(std::array<Field, 2> halves, const PatchMesh& mesh,
                                              const Eigen::ArrayXd& variance) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   Eigen::ArrayXd drawn = variance.sqrt();
   for (PatchIndex i = 0; i < mesh.size(); ++i)
-    if ((hash({keys[i], of_row_sums}) & 1U) != 0) drawn[i] = -drawn[i];
+    if ((hash({keys[i], stream::signs_of_row_sums}) & 1U) != 0) drawn[i] = -drawn[i];
   const Field error = mean_of(halves).colwise() * drawn;
   halves[0] += error;
   halves[1] -= error;

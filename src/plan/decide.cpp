@@ -1,5 +1,6 @@
 #include "plan/decide.h"
 
+#include "base/rounded.h"
 #include "light/texture.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
@@ -159,13 +160,6 @@ Decision overruled(Decision by_facts, const Request& request) {
   return by_facts;
 }
 
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(3);
-  text << value;
-  return text.str();
-}
-
 Decision occlusion(const EffectFacts& facts) {
   if (facts.inside_hull == 0) {
     return {Effect::occlusion, false, "all faces lie on one convex hull: nothing can stand between two patches",
@@ -181,7 +175,7 @@ Decision occlusion(const EffectFacts& facts) {
 std::string bounces(double reflectance, double error) {
   if (reflectance >= 1) return "a reflectance of 1 sets no limit to the number of bounces";
   const double count = std::max(1.0, std::ceil(std::log(error) / std::log(reflectance)));
-  return "after " + number(count) + " bounces at most " + number(error) + " of the light is left";
+  return "after " + rounded(count) + " bounces at most " + rounded(error) + " of the light is left";
 }
 
 Decision interreflection(const EffectFacts& facts, const Request& request) {
@@ -189,7 +183,7 @@ Decision interreflection(const EffectFacts& facts, const Request& request) {
     return {Effect::interreflection, false, "all reflectances are 0: light is absorbed where it first arrives",
             "form factors of the lamps alone, and no equations"};
   }
-  return {Effect::interreflection, true, "the highest reflectance is " + number(facts.highest_reflectance),
+  return {Effect::interreflection, true, "the highest reflectance is " + rounded(facts.highest_reflectance),
           bounces(facts.highest_reflectance, tolerance_of(request.solver))};
 }
 
@@ -268,7 +262,7 @@ Decision daylight(Effect effect, const EffectFacts& facts, const char* rays) {
 Decision sun(const EffectFacts& facts) {
   if (!facts.sun_altitude) return {Effect::sun, false, "the scene has none", "no rays towards it"};
   if (*facts.sun_altitude > 0) return daylight(Effect::sun, facts, "64 shadow rays per patch");
-  return {Effect::sun, false, "it is " + number(-*facts.sun_altitude) + " degrees below the horizon",
+  return {Effect::sun, false, "it is " + rounded(-*facts.sun_altitude) + " degrees below the horizon",
           "no rays towards it"};
 }
 
@@ -297,7 +291,7 @@ Decision textures(const EffectFacts& facts) {
   return {Effect::textures, true,
           std::to_string(facts.textured) + " of " + counted(facts.materials, "material") +
               (facts.textured == 1 ? " has a picture" : " have pictures") +
-              "; texels differ from the mean of their picture by up to " + number(100 * facts.texture_deviation) +
+              "; texels differ from the mean of their picture by up to " + rounded(100 * facts.texture_deviation) +
               " %, rms",
           "the mean of a picture over each patch"};
 }

@@ -4,6 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "base/tolerances.h"
 #include "scene/triangulate.h"
 
@@ -24,7 +25,7 @@ constexpr std::uint32_t point_count = 1U << log2_points;
 const std::vector<std::array<std::uint32_t, 4>>& base_points() {
   static const auto all = [] {
     std::vector<std::array<std::uint32_t, 4>> bits(point_count);
-    const auto sequence = scrambled_sobol(point_count, 0x70697873);
+    const auto sequence = scrambled_sobol(point_count, stream::pixel_sequence);
     for (std::uint32_t k = 0; k < point_count; ++k) {
       for (std::size_t d = 0; d < 4; ++d) bits[k][d] = static_cast<std::uint32_t>(sequence[k][d] * 0x1p32);
     }

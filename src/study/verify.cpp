@@ -111,7 +111,7 @@ std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kep
   std::vector<LeftOutSide> sides;
   std::vector<PathReceiver> receivers;
   for (const std::uint32_t k :
-       drawn_by_weight(areas_left_out(scene, kept), options.left_out, {options.seed, 0x6c656674})) {
+       drawn_by_weight(areas_left_out(scene, kept), options.left_out, {options.seed, stream::compared_left_out})) {
     const Side side = k % 2 == 0 ? Side::front : Side::back;
     sides.push_back({k / 2, side, {}, {}});
     receivers.push_back(receiver_on(scene, k / 2, side));
@@ -163,8 +163,8 @@ Eigen::ArrayXd drawing_weights(const Simulation& simulation) {
 }
 
 std::vector<PatchIndex> draw(const Eigen::ArrayXd& weights, std::size_t count, std::uint64_t seed) {
-  const auto drawn =
-      drawn_by_weight({weights.data(), static_cast<std::size_t>(weights.size())}, count, {seed, 0x63686f6f7365});
+  const auto drawn = drawn_by_weight({weights.data(), static_cast<std::size_t>(weights.size())}, count,
+                                     {seed, stream::compared_patches});
   return {drawn.begin(), drawn.end()};
 }
 

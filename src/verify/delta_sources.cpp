@@ -366,8 +366,8 @@ Spectrum MirrorImages::sample_irradiance(const LitPoint& at, PolygonIndex polygo
     chain.push_back(draw.side);
     sum += along_chain(chain, at, polygon, sample) / probability;
     const MirrorSide& last = sides_[draw.side];
-    if (sides_.size() < 2 || uniform({sample.seed, length, 1}) >= last.reflectance) return sum;
-    draw = draw_side(next_[draw.side], uniform({sample.seed, length, 2}));
+    if (sides_.size() < 2 || uniform({sample.seed, length, stream::next_mirror}) >= last.reflectance) return sum;
+    draw = draw_side(next_[draw.side], uniform({sample.seed, length, stream::side_of_next_mirror}));
     probability *= last.reflectance * draw.probability;
   }
 }

@@ -172,7 +172,7 @@ RayEnd walk_to_end(const PathScene& scene, std::optional<Hit> hit, const Vector&
     const bool may_end = scatters(surface) || meeting >= 4;
     const double ends = may_end ? std::max(0.0, 1 - through.mean() - mirrored.mean()) : 0;
     const double sum = through.mean() + mirrored.mean() + ends;
-    const double drawn = sum * uniform({seed, meeting, stream::path_vertices});
+    const double drawn = sum * uniform({seed, meeting, stream::pane_or_reflection});
     if (drawn >= through.mean() + mirrored.mean()) {
       end.factor *=
           ends > 0 ? Spectrum(relative_held(surface, cosine) * (sum / ends)) : Spectrum(Spectrum::Zero(scene.bands()));

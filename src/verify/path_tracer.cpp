@@ -344,10 +344,10 @@ Spectrum PathTracer::light_from_sources(const std::vector<Vertex>& vertices, con
   std::vector<Spectrum> unoccluded;
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Vertex& vertex = vertices[k];
-    if (step.asked < 1 && uniform({step.seed, vertex.path, 10}) >= step.asked) continue;
+    if (step.asked < 1 && uniform({step.seed, vertex.path, stream::path_survives}) >= step.asked) continue;
     const Eigen::Vector2d on_luminaire(samples[k][0], samples[k][1]);
-    for (const LightSample& light :
-         sources_.sample({vertex.point, vertex.normal}, uniform({step.seed, vertex.path, 5}), on_luminaire)) {
+    for (const LightSample& light : sources_.sample(
+             {vertex.point, vertex.normal}, uniform({step.seed, vertex.path, stream::path_luminaire}), on_luminaire)) {
       segments.push_back({vertex.point, light.from, vertex.polygon, no_polygon});
       unoccluded.emplace_back(vertex.throughput * light.irradiance);
     }
