@@ -465,7 +465,7 @@ std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference) {
-  // Of two independent values each is off by a root of one half of their difference.
+  // The error of each of two independent values is their difference over sqrt(2).
   const Field error = followed(transport, problem, difference / std::sqrt(2.0));
   return form_factor_scale * means_around(mesh, problem.area, error);
 }

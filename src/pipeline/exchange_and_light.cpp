@@ -128,8 +128,8 @@ DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options
   return mirrored_irradiance(lighting, faces, mesh, options, run.observer);
 }
 
-// Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that see
-// backs most lie inside of solids, which a few rays find as well.
+// Half as many rays towards bright patches as over the hemisphere, in packets of both halves. In meshes with many
+// patches, most patches that see backs lie inside solids; a few rays detect that as well.
 RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
   const AssemblyOptions& assembly = plan.assembly;
   return {.rays = assembly.rays,
@@ -140,7 +140,7 @@ RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
           .seed = assembly.seed};
 }
 
-// Rays that are the same for all patches grow as those of a patch in the mean do, by powers of two.
+// Ray counts shared by all patches grow with the mean number per patch, by powers of two.
 int times_for_all(const Known& known) {
   const std::vector<std::uint8_t>& doublings = known.more_rays.of_rows;
   const double mean = doublings.empty() ? 1 : multiples(doublings, static_cast<Eigen::Index>(doublings.size())).mean();
@@ -202,7 +202,7 @@ std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>&
   return std::nullopt;
 }
 
-// Colours may differ, but rays have gone on from the polygons from which they would go on now.
+// Colors may differ, but the same polygons have to be specular as when the rays were traced.
 void require_same_kinds(const RayExchange& known, const Run& run) {
   const auto now = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
   const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();

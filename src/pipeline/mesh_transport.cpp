@@ -20,7 +20,7 @@
 namespace patchlight {
 namespace {
 
-// Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
+// Exchange areas before closure, with the errors of their entries. Known entries come from the previous mesh.
 Assembly assembly_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Occluder& occluder = run.world->between_patches();
   if (!known.exchange) return assemble_exchange_areas(mesh, occluder, plan.assembly, run.observer);
@@ -72,7 +72,7 @@ MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts
 }  // namespace
 
 RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found) {
-  // 1. Rows in the colour of this run.
+  // 1. Rows in the color of this run.
   RayExchange& exchange = found.exchange;
   RayLight& light = found.light;
   exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.world->between_patches());

@@ -58,7 +58,7 @@ std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracySte
                     percent(reachable, 2) + "% or more\nhint: or improve a part only: accuracy.interest");
 }
 
-// The plan of a mesh with so many rays of a patch in the mean, for its memory.
+// The plan of a mesh with this mean number of rays per patch, for estimating its memory.
 Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
   plan.assembly.rays = static_cast<int>(std::ceil(times_the_rays(cuts) * plan.assembly.rays));
   return plan;
@@ -130,7 +130,7 @@ std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
-// AccuracyOptions::solver_part: a tenth of the accuracy, unless that or the solver's relative error was asked for.
+// AccuracyOptions::solver_part: a tenth of the accuracy, unless the request sets it or the solver's relative error.
 std::optional<double> part_of_solver(const Run& run, double accuracy) {
   const std::optional<double>& asked = run.plan.accuracy.solver_part;
   return asked || run.request.solver.relative_error ? asked : std::optional(0.1 * accuracy);
@@ -250,15 +250,14 @@ bool Search::may_go_by_rays(const Plan& plan) const {
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {
-  notes_.push_back(
-      {DiagnosticCode::rows_of_rays,
-       "form factors of more than " + std::to_string(steps_.back().patches) +
-           " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
-           "takes do not fit into the memory"});
+  notes_.push_back({DiagnosticCode::rows_of_rays,
+                    "form factors of more than " + std::to_string(steps_.back().patches) +
+                        " patches are rows of rays (assembly.storage=rays), because all pairs of the patches that the "
+                        "accuracy needs do not fit into the memory"});
   return by_rays(plan);
 }
 
-// Where the accuracy is out of reach with all pairs, the next mesh goes by rays, unless pairs were asked for.
+// If the accuracy is out of reach with pairs, the next mesh uses rays, unless the request requires pairs.
 Plan Search::stored_for(const SolvedMesh& solved, double accuracy) {
   const Plan& plan = solved.simulation.plan;
   if (run_.plan.accuracy.seconds || steps_.back().total <= accuracy) return plan;

@@ -71,7 +71,7 @@ std::array<const Field*, 7> fields_of(const RayLight& light) {
           &light.lit.direct_standard_error};
 }
 
-// True when each band of a field is the factor times the one from which it is said to follow, but for some rounding.
+// True when each band of a field is its factor times its source band, up to rounding.
 bool follows(const Field& field, const SolvedBands& bands) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     for (Eigen::Index band = 0; band < field.cols(); ++band) {
@@ -141,7 +141,7 @@ struct SingleErrors {
   Field of_lights;  // standard errors of lamps and of lights that are no patches
 };
 
-// A mean square over n draws has a relative standard error of sqrt(2 / n). Of many patches each draw costs more.
+// A mean square over n draws has a relative standard error of sqrt(2 / n). Draws cost more with many patches.
 std::uint64_t number_of_draws(PatchIndex patches) {
   return patches > very_many_patches ? 4 : patches > many_patches ? 8 : 16;
 }

@@ -70,7 +70,7 @@ Asked error_bars(const AccuracyOptions& accuracy) {
 
 Asked rays(const Request& request) { return {"assembly.rays", request.assembly.rays != AssemblyOptions().rays}; }
 
-// Refuses those of `others` that are asked for beside `one`.
+// Refuses those of `others` that the request sets together with `one`.
 void require_alone(const Asked& one, std::initializer_list<Asked> others, const std::string& why) {
   if (!one.is_asked) return;
   for (const Asked& other : others) {

@@ -18,10 +18,10 @@
 namespace patchlight {
 namespace {
 
-// The exchange areas, in float, half of a symmetric matrix. The rest is measured: what the program and its libraries
-// take, and the mesh, the fields and the results per patch.
+// The exchange areas, in float, half of a symmetric matrix. The rest is measured: the program and its libraries, and
+// the mesh, the fields and the results per patch.
 constexpr double bytes_per_pair = 2;
-constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
+constexpr double bytes_per_error = 0.5;  // standard errors, if kept: one byte for two entries
 constexpr double bytes_per_patch = 1500;
 constexpr double bytes_of_next_mesh = 1000;  // per patch where rows of rays are refined
 constexpr double bytes_of_program = 50e6;
@@ -50,7 +50,7 @@ LightInMemory light_in_memory(const Plan& plan) {
   return {simulates(plan, Effect::colour), simulates(plan, Effect::mirrors)};
 }
 
-// Of the scene, and of the tree that finds polygons along a ray.
+// The scene and the tree of the ray tracer.
 double bytes_of_polygons(const Plan& plan) { return 1500 * static_cast<double>(plan.sides.front.size()); }
 
 double installed_bytes() {
@@ -117,8 +117,8 @@ std::string gigabytes(double bytes) {
 }
 
 std::string memory_refused(double bytes, const Resources& resources) {
-  return "takes " + gigabytes(bytes) + ", and " + gigabytes(usable_memory(resources)) + " may be taken" +
-         (resources.memory ? " (resources.memory)" : " here");
+  return "takes " + gigabytes(bytes) + ", and " + gigabytes(usable_memory(resources)) +
+         (resources.memory ? " is allowed (resources.memory)" : " is available");
 }
 
 double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy,
@@ -161,7 +161,7 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
   const double usable = usable_memory(plan.resources);
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_that_fit(plan));
-  // Small faces take a patch each, however few are asked for.
+  // Each small face needs a patch of its own, whatever the requested number.
   const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
   const std::string by_rays = advice_by_rays(patches, plan);
   const std::string hint = usable <= 2 * bytes_of_program ? ": the program itself needs " + gigabytes(bytes_of_program)

@@ -135,8 +135,8 @@ Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed
     const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
     if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   }
-  // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid. Where a
-  //    quarter of them find no part of a small one covered, that is enough.
+  // 2. If backs are visible, groups of rays distinguish a patch that looks at backs from one inside a solid. For a
+  //    small patch a quarter of them is enough, if they find no covered part.
   if (sees_backs && mesh.area[patch] < small) {
     const Shares few = measure_groups(patch, hemisphere_rays(patch, std::max(1, rays / 4), rays_per_point, seed), seed);
     if (few.covered == 0) return few;

@@ -220,8 +220,8 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
   trace_packets(pairs, begin, end);
 }
 
-// By the form factor from the smaller patch, or its estimate by the weights of the first samples. Where not one of them
-// has a weight, as the patches see each other in a sliver, it takes the most to find it.
+// Uses the form factor from the smaller patch, or its estimate by the weights of the first samples. If none of these
+// has a weight, because the patches see each other in a sliver, the effort is the largest.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
   if (pair.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
@@ -312,7 +312,7 @@ ClusterHull hull_of(const PatchCluster& cluster, const PatchMesh& mesh, const st
   const PatchShape& first = shapes[cluster.patches[0]];
   const Vector& normal = first.normal;
   if (cluster.is_planar) {
-    // Of the lowest corner: the patches lie in one plane up to rounding only.
+    // The plane passes through the lowest corner: the patches lie in one plane up to rounding only.
     double lowest = normal.dot(first.centroid);
     for (const Point& corner : corners) lowest = std::min(lowest, normal.dot(corner));
     hull.behind = HalfSpace{normal, lowest};

@@ -77,12 +77,10 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   const double least = threshold * expected.dot(area) / area.sum();
   const double all = variance_up_to(expected, area, std::numeric_limits<double>::infinity());
-  // Rays of 32 neighbors, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
-  // scatter.
+  // Rays of 32 neighbors, 64 each, must hit bright patches about 16 times, so that the halves show their scatter.
   const bool meets_by_chance = share_above(expected, area, least) >= 1.0 / 128;
-  // Rays toward bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
-  // in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance
-  // by 1.75.
+  // Rays toward bright patches, half as many as hemisphere rays, cost three quarters of these. The same time spent on
+  // hemisphere rays would divide the variance by 1.75.
   if (meets_by_chance && all < 1.75 * variance_up_to(expected, area, least)) return;
   double flux = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {

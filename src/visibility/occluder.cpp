@@ -106,8 +106,6 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
   rtcCommitScene(target.scene);
 }
 
-// Which polygons take part in tracing; marks are 1 per polygon that does not.
-
 // Whether clear polygons let light through.
 bool lets_through(Occluder::Blockers which) {
   return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
@@ -271,7 +269,7 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   return static_cast<std::uint16_t>(blocked);
 }
 
-// Of the rays whose bit is not set in `blocked`.
+// The polygons crossed by the rays whose bit in `blocked` is not set.
 std::array<Crossed, ShadowPacket::size> Occluder::Tracer::crossed_by(const ShadowPacket& packet,
                                                                      unsigned blocked) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
