@@ -189,7 +189,7 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
 }
 
-// Does a dark patch meet a bright one close by?
+// Whether a dark patch sees a bright one close by.
 bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const {
   return hit.reflections == 0 && 2 * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
@@ -287,7 +287,7 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
   }
 }
 
-// The mean is that over the exposed part: of a patch that solids cover in part, rays that meet backs start inside one.
+// The mean is over the exposed part: on a patch partly covered by solids, rays that hit backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
@@ -350,7 +350,7 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
 
 namespace {
 
-// Each patch as it is seen from afar.
+// Each patch as seen from afar.
 struct SeenFromAfar {
   Field difference;                    // of its radiosity from the patch's mean, W/m^2
   std::vector<std::uint8_t> is_known;  // 0: no ray has met it
@@ -425,8 +425,8 @@ Field reflected_at_quarters(const PatchMesh& mesh, const Scattering& scattering,
   return by_quarters.reflect(irradiance);
 }
 
-// Root mean squares over the quarters of each patch of what both sets of rays find; quarters of a field that is linear
-// have three quarters of the variance of its points.
+// Root mean squares over the quarters of each patch, from both sets of rays. For a linear field the quarters have three
+// quarters of the variance of its points.
 Field display_of(const Differences& one, const Differences& other) {
   const Field product = one.of_irradiance * other.of_irradiance;
   Field mean = Field::Zero(product.rows() / 4, product.cols());

@@ -245,7 +245,7 @@ std::array<double, 2> heights(const PatchShape& patch, const PatchShape& plane) 
 }
 
 bool closer_than(const PatchShape& first, const PatchShape& second, double diameters) {
-  // The same answer for distances that are equal but for rounding.
+  // The same result for distances that are equal up to rounding.
   const double limit = (1 - tolerance_of_shapes) * 2 * diameters * std::max(first.radius, second.radius);
   return (second.centroid - first.centroid).squaredNorm() < limit * limit;
 }

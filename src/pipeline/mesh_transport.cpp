@@ -78,7 +78,7 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.world->between_patches());
   light.distance = std::move(exchange.rows.distance);
 
-  // 2. Means over the exposed part of each patch, which is known but for its own error.
+  // 2. Means over the exposed part of each patch, which has an error of its own.
   const LostShare& lost = exchange.rows.lost;
   RadiosityProblem& problem = light.lit.problem;
   if (cuts_locally(run, mesh.size()) && !run.is_part && light.lit.direct_standard_error.size() > 0)

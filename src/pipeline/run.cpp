@@ -9,7 +9,7 @@
 namespace patchlight {
 namespace {
 
-// Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
+// Warns if a noticeable share of the light on mirrors takes chains that are not followed.
 Diagnostics notes_on_chains(const World& world) {
   const Tracing& tracing = world.tracing();
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};

@@ -25,7 +25,7 @@ struct Run {
   std::shared_ptr<const World> world;
   const Steps& with;
   const Observer& observer;
-  bool is_part = false;  ///< it has some bands of another run, see LightColour
+  bool is_part = false;  ///< it has some bands of another run, see `LightColour`
 };
 
 /// The parts of a run that its steps provide.

@@ -48,7 +48,7 @@ std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracySte
   return Needed{needed, last.total * std::pow(last.patches / most, at_least)};
 }
 
-// Throws MemoryError with the memory that so many patches take, and the error that can be reached.
+// Throws MemoryError with the memory that the patches need, and the reachable error.
 [[noreturn]] void refuse(const Plan& plan, const Needed& needed) {
   const auto& [patches, reachable] = needed;
   throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) + "% needs about " +
@@ -120,12 +120,12 @@ double new_pairs(const AccuracyStep& step) {
   return all * all - known * known;
 }
 
-// The number of patches for which so many times the pairs of the last mesh have to be found.
+// The number of patches of a mesh that needs `times` as many new pairs as the last one did.
 double patches_with(double times, const AccuracyStep& step) {
   return std::sqrt(static_cast<double>(step.patches) * step.patches + std::max(0.0, times) * new_pairs(step));
 }
 
-// How many parents can be cut, each into sixteen new patches, before there are so many.
+// The number of parents that can be cut, each into sixteen new patches, up to `patches` patches.
 std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
@@ -305,11 +305,11 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
   if (!refines(run_.plan.accuracy)) return second(solved);
   const AccuracyStep& step = steps_.back();
-  // Without an accuracy the error is to be halved as long as there is time.
+  // Without an accuracy, the goal is half of the error, as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
   const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
-  // Pairs stop 10 % below the accuracy, as errors are estimates. A mesh by rays is made for an error lower than that,
-  // and another one would cost as much again.
+  // Pairs stop 10 % below the accuracy, because errors are estimates. A mesh by rays aims at a lower error than that,
+  // and another mesh would cost as much again.
   if ((is_by_rays ? 1 : 1.1) * step.total <= accuracy || steps_.size() == 20) return std::nullopt;
   // No mesh reduces the error that a given tolerance leaves.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
@@ -334,7 +334,7 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   const bool all_new = after.storage != before.storage || samples_of(after) != samples_of(before);
   if (!all_new && !more.has_more_patches) return std::nullopt;
 
-  // 2. Known quantities. The solver's error is never asked to be larger than on the mesh before.
+  // 2. Known quantities. The solver's relative error never increases from one mesh to the next.
   const bool keeps_known = !all_new && keeps_entries(after.storage);
   MeshToSolve to_solve{std::move(more.mesh.mesh), more.plan, {}};
   to_solve.plan.accuracy.solver_part = part_of_solver(run_, accuracy);

@@ -100,7 +100,8 @@ SolvedBands needed_bands(const RayLight& light, const SolverOptions& options) {
 
 Field squares_in(const SolvedBands& bands, const Field& error) { return reduced(error, bands).square(); }
 
-// B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
+// B = E + rho o H for light that is reflected once. H is the irradiance by separate lamps plus the light of other
+// emitters in the rows.
 ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
   ConservingSolution once;
   once.gathered = gathered_by_halves(transport, problem.exitance);
@@ -177,10 +178,10 @@ Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, c
   return area_sum(squares, area.cwiseProduct(row_sum)) / (light.rays_per_patch * total(area));
 }
 
-// The variance of the sum of each row, over its square. A share s estimated by n independent rays has a variance of
-// s (1 - s) / n, and s n of them meet patches. Shadow rays towards bright patches are counted as well, though the sum
-// does not follow from them: rays over the hemisphere are stratified, so that by their own number alone bars are too
-// wide (tests/property/rays_test.cpp). Where sides without patches are seen the rays that have looked for these count.
+// The relative variance of the sum of each row. A share s estimated by n independent rays has a variance of s (1 - s) /
+// n, and s n of them hit patches. Shadow rays towards bright patches count as well, although the sum does not depend on
+// them. The reason: hemisphere rays are stratified, so their number alone would make the bars too wide
+// (tests/property/rays_test.cpp). Where backs are visible, the rays that searched for them count.
 Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const PatchMesh& mesh,
                                     const Eigen::VectorXd& row_sum, const LostShare& lost) {
   const double small = small_area(mesh);

@@ -83,7 +83,7 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
   return solve(*transport, coarse, options).radiosity;
 }
 
-// How far two independent values of the irradiance straight from the lamps are apart.
+// The difference of two independent values of the direct irradiance from the lamps.
 Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw, const Field& exitance) {
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = simulation.plan.assembly;

@@ -149,7 +149,7 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   return facts;
 }
 
-// The decision that the facts call for, or the one that the request asks for instead.
+// The decision from the facts, unless the request overrules it.
 Decision overruled(Decision by_facts, const Request& request) {
   const bool wanted = contains(request.effects.force, by_facts.effect) ||
                       (by_facts.simulate && !contains(request.effects.skip, by_facts.effect));
@@ -337,7 +337,7 @@ std::vector<Decision> undecidable(const EffectFacts& facts) {
   return decisions;
 }
 
-// An effect of which the scene has nothing can neither be forced nor skipped.
+// An effect that the scene does not have can neither be forced nor skipped.
 bool is_there(Effect effect, const EffectFacts& facts) {
   switch (effect) {
     case Effect::luminaires:

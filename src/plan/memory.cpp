@@ -77,8 +77,9 @@ Parts stored_as_rays(Parts parts) {
 // Pairs of more patches take tens of seconds, and rows of rays one or two: docs/concepts/pairs-and-rays.md.
 constexpr std::size_t most_patches_in_pairs = 10000;
 
-// Sides have few patches each: the error by the size of patches is larger than the noise of rays, which take much less
-// time than pairs. Not on the way to an accuracy, where faces are cut as it matters, and the noise of rays would limit.
+// True if sides have few patches each: the discretization error exceeds the noise of rays, which take much less time
+// than pairs. False during refinement to an accuracy, where faces are cut as needed and the noise of rays would limit
+// the accuracy.
 bool has_coarse_sides(const StoredLight& light, const Request& request) {
   return light.patches >= 1000 && light.patches < 32 * light.sides && !refines(request.accuracy);
 }
@@ -175,7 +176,7 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
 
 std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge,
                                const ContactLines& contacts) {
-  // Too many to count are as good as the largest number.
+  // Numbers too large to count are clamped.
   const double by_area = std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18);
   return std::max(least_patches(scene, sides, contacts), static_cast<std::size_t>(by_area));
 }

@@ -41,8 +41,8 @@ bool simulates(const std::vector<Decision>& decisions, Effect effect) {
 // How finely the kept sides are cut.
 struct PatchSize {
   double max_edge = 0;      // meters
-  std::size_t patches = 0;  // about so many, or the least that the edge allows
-  std::size_t around = 0;   // of these those of the surroundings of the goal
+  std::size_t patches = 0;  // approximate number, or the smallest one that the edge allows
+  std::size_t around = 0;   // of these, the patches in the surroundings of the goal
   Diagnostics notes;
 };
 
@@ -75,13 +75,13 @@ std::size_t patches_wanted(std::size_t asked, std::size_t least, const Request& 
   return least > 1000 ? std::max(asked, least + least / 4) : asked;
 }
 
-// About so many patches there will be, or the least that the edge asked for allows.
+// The approximate number of patches, or the smallest one that the requested edge allows.
 std::size_t expected_patches(const Outlined& of, const Request& request) {
   if (request.mesh.max_edge) return least_patches_with(of.scene, of.sides, *request.mesh.max_edge, of.contacts);
   return patches_wanted(patches_asked(request), of.search.least_patches(), request);
 }
 
-// The largest edge for the number of patches that is asked for.
+// The largest edge for the requested number of patches.
 PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& request) {
   const std::size_t least = of.search.least_patches();
   const double share = of.goal != nullptr ? of.goal->share_of_surroundings : 0;
@@ -156,7 +156,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const auto coverings = std::make_shared<const Coverings>(find_coverings(scene, sides));
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
-  // An edge that is asked for is that of all patches.
+  // A requested edge applies to all patches.
   const bool has_goal = knows_lights && !asked.mesh.max_edge;
   const std::shared_ptr<const Goal> goal =
       has_goal ? find_goal(scene, sides, *coverings, asked.accuracy.interest, asked.assembly.seed) : nullptr;

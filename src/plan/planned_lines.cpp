@@ -188,7 +188,7 @@ std::vector<ShadowLine> ShadowSearch::lines_of(const Silhouette& edge) const {
   return lines;
 }
 
-// Where a line meets another of the same plane, as a part of its length; nothing where it passes by the other.
+// The intersection of a line with another in the same plane, as a fraction of its length; nothing if they do not cross.
 std::optional<double> meeting(const ContactLine& line, const Point& from, const Point& to, double near) {
   const Vector along = line.to - line.from;
   const Vector other = to - from;
@@ -274,7 +274,7 @@ std::int64_t rounded_length(const ContactLine& line) {
   return std::llround(std::log2((line.to - line.from).squaredNorm()) * 0x1p20);
 }
 
-// The longest of the lines, so many of them; of equal ones the first.
+// The `number` longest lines; ties in their order.
 ContactLines longest_of(const ContactLines& all, std::size_t number) {
   if (number >= number_of(all)) return all;
   struct Place {

@@ -269,8 +269,9 @@ double PairSampler::exchange_area(const Pair& pair) const {
   const double n = pair.rays();
   const double m = pair.weighted_rays;
   if (share == 1 || m < 2) return share * U;
-  // U less the mean weight has the expectation 0. Times the visible share of the other samples, which it does not
-  // depend on, it takes away what the weights scatter; without those other samples it would be a bias.
+  // U minus the mean weight has the expectation 0: a control variate. It is multiplied by the visible share of the
+  // other samples, from which it is independent, and removes the scatter of the weights. With the same samples it would
+  // add a bias.
   const auto held_by_both = static_cast<double>(held(pair.first, pair.second));
   const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;

@@ -38,7 +38,7 @@ std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
     for (const double s : size) all += rounded(factor * s);
     return all;
   };
-  // The largest factor with which there are no more rays than wanted, by bisection of its logarithm; sizes are
+  // The largest factor that does not exceed the requested number of rays, by bisection of its logarithm; sizes are
   // positive.
   const double wanted = 0.5 * mean * static_cast<double>(areas.size());
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
@@ -195,8 +195,8 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
   return rays;
 }
 
-// The contribution of a ray over the hemisphere that meets a bright patch, by the balance heuristic: G / (n G + m p).
-// No shadow ray comes by way of a mirror: there it is 1 / n.
+// The contribution of a hemisphere ray that hits a bright patch, by the balance heuristic: G / (n G + m p). Shadow rays
+// do not follow mirrors: there it is 1 / n.
 float RowTracer::entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const {
   if (hit.reflections > 0) return 1 / static_cast<float>(counts_[patch]);
   const double cosines = mesh_.normal[patch].dot(ray.direction) * std::abs(mesh_.normal[met].dot(ray.direction));

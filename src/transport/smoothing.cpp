@@ -107,7 +107,7 @@ namespace {
 // Neighbors lie within this share of the mean distance of the surroundings.
 constexpr double reach = 0.2;
 
-// About so many at most.
+// The approximate maximum number.
 constexpr double most_neighbours = 32;
 
 // Their normals' cosine is above this one, that of 25 degrees.

@@ -47,7 +47,7 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
   }
 }
 
-// Where the ray meets the plane, does another polygon lie over it?
+// Whether another polygon lies over the point where the ray hits the plane.
 bool is_covered(const TrianglePlane& plane, const Segment& ray, const CoveredPlaces& places) {
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);

@@ -19,8 +19,8 @@ namespace patchlight {
 /// How a scene is cut into patches, and which sides of its polygons are included.
 struct MeshOptions {
   std::optional<double> max_edge = {};  ///< longest patch edge, meters
-  /// The number of kept patches, used if max_edge is not set. Default: default_patches, or first_patches where patches
-  /// are refined.
+  /// The number of kept patches, instead of max_edge. Default: default_patches, or first_patches where patches are
+  /// refined.
   std::optional<std::size_t> patches = {};
   Sides sides = Sides::automatic;
   /// Patches end where faces touch, cross or nearly touch, and at the edges of hard shadows.
