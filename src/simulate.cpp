@@ -71,8 +71,8 @@ Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, c
   const Given given = given_by(with);
   check(request, scene, given);
 
-  // 2. Survey the scene; decide which effects are simulated, which sides take part, how finely they are subdivided, and
-  //    how form factors and radiosities are found.
+  // 2. Survey the scene. Decide which effects are simulated, which sides are included, how finely they are subdivided,
+  //    and how form factors and radiosities are computed.
   const Plan plan = make_plan(scene, request, given);
   require_memory(scene, request, plan);
   clock.finish(Stage::plan);
@@ -91,7 +91,7 @@ Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, c
       require_memory(meshed.mesh.patches.size(), request, meshed.plan);
       clock.finish(Stage::mesh);
 
-      // 5. to 8. For each colour that clear faces and mirrors tell apart.
+      // 5. to 8. Once for each color that clear faces and mirrors distinguish.
       SolvedMesh result =
           colours.empty() ? solved_mesh(run, *next, search, clock) : solved_in_colours(run, colours, meshed, clock);
 

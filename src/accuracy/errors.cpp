@@ -169,9 +169,9 @@ void add_row(SeenSources& seen, const RayRows& rows, PatchIndex i, double weight
     seen.add(i, entry.patch, weight * static_cast<double>(entry.form_factor));
 }
 
-// Half of the light that a patch in a gap would get wrong, as measured in ten rooms, times the share of near faces
-// beyond that of one. Light from sources of one radiosity is right wherever it comes from, so no more is wrong than
-// their range and the direct light.
+// Half of the wrong light of a patch in a gap, as measured in ten rooms, times the share of near faces beyond that of
+// one face. Sources of equal radiosity cause no error, wherever their light comes from. So the error is limited by the
+// range of radiosities and the direct light.
 template <typename AddSources>
 Field errors_in_gaps(const PatchMesh& mesh, const SolvedProblem& solved, double within, const AddSources& add_sources) {
   const Field& H = solved.solution.irradiance;
@@ -465,7 +465,7 @@ std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
                           const FieldView& difference) {
-  // Of two independent values each is off by a root of one half of their difference.
+  // The error of each of two independent values is their difference over sqrt(2).
   const Field error = followed(transport, problem, difference / std::sqrt(2.0));
   return form_factor_scale * means_around(mesh, problem.area, error);
 }

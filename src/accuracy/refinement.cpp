@@ -90,7 +90,8 @@ Eigen::VectorXd importance(const TransportOperator& transport, const RadiosityPr
   const RadiosityProblem adjoint{problem.scattering, problem.scattering.adjoint(wanted), problem.area};
   SolverOptions loosely{.solver = usual_solver(transport, problem), .relative_error = 0.05, .patch_bounds = false};
   if (!transport.is_reciprocal()) {
-    // A bound would cost as much as the solution: its residual ends it, at half of the error that is wanted.
+    // A bound would cost as much as the solution. The residual is the stopping criterion, at half of the requested
+    // error.
     loosely.relative_error = 0.02;
     loosely.max_iterations = 100;
     loosely.largest_row_sum = std::numeric_limits<double>::infinity();

@@ -47,8 +47,8 @@ bool is_gap(std::span<const std::optional<Hit>> hits, double face_area) {
   return 2 * static_cast<std::size_t>(count) > hits.size();
 }
 
-// True when fewer than half of the walks from the place with this key leave the scene in four reflections, and the
-// space before it is no gap before a face of this area, m^2.
+// True when fewer than half of the random walks from the place with this key leave the scene within four reflections.
+// False in a gap in front of a face of this area, m^2.
 bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& from, std::size_t key, double face_area,
                  std::uint32_t walks) {
   std::vector<FacingPlace> places(walks, from);
@@ -70,7 +70,7 @@ bool is_enclosed(const Scene& scene, const Occluder& faces, const FacingPlace& f
 }  // namespace
 
 Eigen::VectorXd enclosed_patches(const Scene& scene, const Occluder& faces, const PatchMesh& mesh) {
-  // Of very many patches only those at a space's border are less sure with fewer walks.
+  // In a very large mesh, fewer walks reduce the confidence only for patches at a space's border.
   const std::uint32_t walks = mesh.size() > 50000 ? 4 : usual_walks;
   std::vector<double> face_area;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) face_area.push_back(polygon_area(scene, p));
@@ -183,7 +183,7 @@ Interest interest_named(const std::string& name, const std::set<std::string>& kn
   return {name};
 }
 
-// Of the rooms of this name, per patch whether it faces into one.
+// Per patch: whether it faces into a room of this name.
 std::vector<bool> facing_into(const Scene& scene, const PatchMesh& mesh, const std::string& name) {
   std::vector<bool> faces(mesh.size(), false);
   for (const NamedRoom& room : scene.rooms) {
@@ -210,7 +210,7 @@ Eigen::VectorXd meant_by(const Scene& scene, const PatchMesh& mesh, const Intere
   return meant;
 }
 
-// By daylight there is so much more light outside that an error relative to all of it says nothing of the rooms.
+// By daylight there is much more light outside, so an error relative to all of it would hide the errors in the rooms.
 Eigen::VectorXd interest_by_default(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) {
   for (PatchIndex i = 0; i < enclosed.size(); ++i) {
     if (enclosed[i] == 1 && (scene.materials[mesh.material[i]].reflectance > 0).any()) return enclosed;
@@ -245,7 +245,8 @@ void require_reflecting(const Scene& scene, const RadiosityProblem& problem, con
   if ((interest.array() == 1).all()) return;
   const Field even = interest.array().replicate(1, problem.exitance.cols());
   if ((highest(problem.scattering.reflect(even)) > 0).any()) return;
-  throw InputError(scene.file, "the surfaces of accuracy.interest reflect no light, of which the accuracy is measured");
+  throw InputError(scene.file,
+                   "the surfaces of accuracy.interest reflect no light; the accuracy is that of reflected light");
 }
 
 void require_names(const Scene& scene, const std::vector<std::string>& names) {

@@ -62,12 +62,13 @@ ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex
 
 namespace {
 
-// From so far away, a distance in metres, the quarters of a patch look alike, but for what hides some of them.
+// True when a patch is so far away, `distance` in meters, that its quarters look alike, unless something hides some of
+// them.
 bool is_far_from(const PatchCorners& corners, double distance) {
   return distance * distance > 8 * 8 * longest_edge_squared(corners);
 }
 
-// How many rays have met a patch that is far from where they start.
+// The number of rays that have hit a patch far from their start.
 int count_far(const PatchCorners& from, std::span<const Seen> seen) {
   return static_cast<int>(std::count_if(seen.begin(), seen.end(), [&](const Seen& one) {
     return one.sight == Sight::patch && is_far_from(from, one.met->distance);
@@ -162,8 +163,9 @@ std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& r
   return seen;
 }
 
-// E h F V / p for a lamp that is chosen with probability p, F exact, h what it holds back of light: a row for each ray,
-// by its origin, those of the first quarter first. All quarters look to the same points of the same lamps.
+// E h F V / p for a lamp that is chosen with probability p: F is exact, and h is the share of the light that the lamp
+// holds back. One row for each ray, by its origin, those of the first quarter first. All quarters sample the same
+// points of the same lamps.
 Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const {
   Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
   if (lamps_.empty()) return irradiance;
@@ -187,7 +189,7 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
 }
 
-// Does a dark patch meet a bright one close by?
+// Whether a dark patch sees a bright one close by.
 bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const {
   return hit.reflections == 0 && 2 * irradiance_.row(patch).sum() < irradiance_.row(met).sum() &&
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
@@ -233,12 +235,11 @@ double Gather::from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, co
   return sent + emitted * (1 - part_by_shadow_rays(choice, sender, geometry));
 }
 
-// By what share more light arrives at a point of a patch than in the mean over it. That from no patch is taken to be
-// even.
+// The relative excess of light at a point of a patch over the mean of the patch. Light from no patch counts as uniform.
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
   const double whole = irradiance_.row(patch).sum();
-  // Of few lamps each is weighed for each point.
+  // With few lamps, each is weighed for each point.
   const bool takes_by_flux = lamps_.empty() || lamps_.size() > 16;
   const ChoiceOfLamps for_patch = takes_by_flux ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
   const ChoiceOfLamps& choice = takes_by_flux ? by_flux_ : for_patch;
@@ -286,7 +287,7 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
   }
 }
 
-// The mean is that over the exposed part: of a patch that solids cover in part, rays that meet backs start inside one.
+// The mean is over the exposed part: on a patch partly covered by solids, rays that hit backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
   const Field direct = straight_from_lamps(patch, rays);
@@ -349,7 +350,7 @@ GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQu
 
 namespace {
 
-// Each patch as it is seen from afar.
+// Each patch as seen from afar.
 struct SeenFromAfar {
   Field difference;                    // of its radiosity from the patch's mean, W/m^2
   std::vector<std::uint8_t> is_known;  // 0: no ray has met it
@@ -424,8 +425,8 @@ Field reflected_at_quarters(const PatchMesh& mesh, const Scattering& scattering,
   return by_quarters.reflect(irradiance);
 }
 
-// Root mean squares over the quarters of each patch of what both sets of rays find; quarters of a field that is linear
-// have three quarters of the variance of its points.
+// Root mean squares over the quarters of each patch, from both sets of rays. For a linear field the quarters have three
+// quarters of the variance of its points.
 Field display_of(const Differences& one, const Differences& other) {
   const Field product = one.of_irradiance * other.of_irradiance;
   Field mean = Field::Zero(product.rows() / 4, product.cols());
@@ -433,10 +434,10 @@ Field display_of(const Differences& one, const Differences& other) {
   return mean;
 }
 
-// As much flux arrives as the differences send, sum_q A_q dB_q over what sees patches: next to none, where nothing is
-// lost. What noise adds to it, all reflections would multiply. What is seen is that of other rays, as what one set
-// finds of it goes with what it finds of the light. Where points stand for quarters, only the
-// arriving side is without them, which is taken to be little.
+// Makes the arriving flux equal the flux that the differences send: sum_q A_q dB_q over the visible share, which is
+// nearly 0 if nothing is lost. Otherwise all reflections would multiply the noise in it. The visible share comes from
+// the other set of rays, because within one set it is correlated with the light. Where points replace quarters, only
+// the arriving side omits them, a small error.
 Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences, const GatheredQuarters& other) {
   Field off = Field::Zero(1, differences.of_quarters.cols());
   for (Eigen::Index q = 0; q < differences.of_quarters.rows(); ++q) {
@@ -449,9 +450,9 @@ Field with_flux_sent(const Eigen::VectorXd& area, const Differences& differences
   return differences.at_patches + (off / area.sum()).replicate(area.size(), 1);
 }
 
-// From afar the quarters of a patch are seen alike, and their differences cancel, unless something close to some of
-// them hides these. By reciprocity each of them counts by how much of what is far can be seen from it: that is told by
-// other rays, as in these it goes with the light.
+// From far away the quarters of a patch look alike and their differences cancel, unless something near hides some of
+// them. By reciprocity each quarter counts by its view of far surfaces. The other rays measure that view, since in
+// these rays it is correlated with the light.
 SeenFromAfar seen_from_afar(const Field& of_quarters, const GatheredQuarters& rays, const Eigen::ArrayXd& open) {
   const Eigen::ArrayXd weight = rays.exposed * open;
   const Eigen::Index patches = of_quarters.rows() / 4;

@@ -49,8 +49,8 @@ std::array<float, 3> narrow(const Vector& v) {
 }
 
 // The corners moved toward the centroid until the border lies 5e-7 of the scene's extent inside, at most 1e-3 of the
-// way. Rays in single precision that start within some 3e-7 of a wall on whose foot a patch ends may pass it
-// (Occluder).
+// way. A ray in single precision that starts within about 3e-7 of a wall may pass it, where the patch ends at the foot
+// of the wall (Occluder).
 std::array<Point, 4> inner_corners(const PatchShape& shape, double scale) {
   const auto& [points, count] = shape.corners;
   double nearest = std::numeric_limits<double>::infinity();

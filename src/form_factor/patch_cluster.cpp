@@ -125,7 +125,7 @@ std::vector<PatchCluster> patch_clusters(const PatchMesh& mesh, const std::vecto
     }
   }
   if (!others.empty()) add(others, false);
-  // In the order of the patches, so that neighbouring clusters write neighbouring entries.
+  // Sorted by patch, so that neighboring clusters write neighboring entries.
   std::sort(clusters.begin(), clusters.end(),
             [](const PatchCluster& a, const PatchCluster& b) { return a.patches[0] < b.patches[0]; });
   return clusters;

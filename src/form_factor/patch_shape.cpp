@@ -245,7 +245,7 @@ std::array<double, 2> heights(const PatchShape& patch, const PatchShape& plane) 
 }
 
 bool closer_than(const PatchShape& first, const PatchShape& second, double diameters) {
-  // The same answer for distances that are equal but for rounding.
+  // The same result for distances that are equal up to rounding.
   const double limit = (1 - tolerance_of_shapes) * 2 * diameters * std::max(first.radius, second.radius);
   return (second.centroid - first.centroid).squaredNorm() < limit * limit;
 }
@@ -289,13 +289,13 @@ double unoccluded_exchange_area(const PatchShape& first, const PatchShape& secon
       return product_quadrature(first.fine, first.normal, second.fine, second.normal);
     return product_quadrature(first.coarse, first.normal, second.coarse, second.normal);
   };
-  // Of strips as narrow as their corners are rounded some points may look away.
+  // Strips as narrow as the rounding of their corners may have points that look away.
   return std::max(0.0, by_quadrature());
 }
 
 namespace {
 
-// Where a scene lies: coordinates in it are axes^T (x - centre) / size.
+// The frame of a scene: coordinates in it are `axes^T (x - centre) / size`.
 struct Frame {
   Point centre;
   Eigen::Matrix3d axes;
@@ -357,7 +357,7 @@ Eigen::Matrix3d oriented(Eigen::Matrix3d axes, const Point& centre, double size,
   return axes;
 }
 
-// By moments of the surfaces, not of the patches' centroids: however they are cut, it stays.
+// Computed from moments of the surfaces, so it does not depend on how they are cut into patches.
 Frame scene_frame(const PatchMesh& mesh) {
   double total = 0;
   Vector sum = Vector::Zero();
@@ -390,7 +390,7 @@ std::vector<std::uint32_t> patch_keys(const PatchMesh& mesh) {
   keys.reserve(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const Vector position = scale * frame.axes.transpose() * (mesh.centroid[i] - frame.centre);
-    const double facing = mesh.normal[i].dot(frame.axes * Vector(1, 2, 4));  // tells the two sides of a polygon apart
+    const double facing = mesh.normal[i].dot(frame.axes * Vector(1, 2, 4));  // distinguishes the two sides of a polygon
     keys.push_back(hash({step_of(position.x()), step_of(position.y()), step_of(position.z()), facing > 0 ? 1U : 0U}));
   }
   return keys;

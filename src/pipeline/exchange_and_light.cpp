@@ -56,7 +56,7 @@ LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, 
                       {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
 }
 
-// The factors of the lamps that are apart, without rows.
+// The factors of the separate lamps, without rows.
 RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
   RayExchange found;
   for (const LampSide& lamp : lamps_apart(run.scene, mesh, problem, run.world->tracing()))
@@ -65,7 +65,8 @@ RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh
   return found;
 }
 
-// Lamps that are bright now, and neither apart nor bright when the rows were traced: their rays would miss most of it.
+// Lamps that are bright now, but were neither separate nor bright when the rows were traced: rays would miss most of
+// their light.
 std::vector<PatchRange> new_lamps(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
                                   const RayExchange& known) {
   std::vector<PatchRange> lamps;
@@ -109,8 +110,8 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
   return known;
 }
 
-// The irradiance by light that lamps apart send over mirrors and clear faces, which their factors do not have; empty
-// where reflections are not followed.
+// The irradiance by separate lamps over mirrors and clear faces, which their factors do not include; empty if
+// reflections are not followed.
 DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
                                   const std::vector<PatchRange>& lamps) {
   if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
@@ -128,8 +129,8 @@ DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options
   return mirrored_irradiance(lighting, faces, mesh, options, run.observer);
 }
 
-// Half as many towards bright patches as over the hemisphere, in packets of both halves. Of many patches that see
-// backs most lie inside of solids, which a few rays find as well.
+// Half as many rays towards bright patches as over the hemisphere, in packets of both halves. In meshes with many
+// patches, most patches that see backs lie inside solids; a few rays detect that as well.
 RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
   const AssemblyOptions& assembly = plan.assembly;
   return {.rays = assembly.rays,
@@ -140,7 +141,7 @@ RayOptions rays_as_planned(const Plan& plan, const PatchMesh& mesh) {
           .seed = assembly.seed};
 }
 
-// Rays that are the same for all patches grow as those of a patch in the mean do, by powers of two.
+// Ray counts shared by all patches grow with the mean number per patch, by powers of two.
 int times_for_all(const Known& known) {
   const std::vector<std::uint8_t>& doublings = known.more_rays.of_rows;
   const double mean = doublings.empty() ? 1 : multiples(doublings, static_cast<Eigen::Index>(doublings.size())).mean();
@@ -152,7 +153,7 @@ Field irradiance_by(const LampValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
 }
 
-// The light of the lamps apart, as means over whole patches.
+// The light of the separate lamps, as means over whole patches.
 RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
   RayLight light;
   light.lit = std::move(lit);
@@ -202,7 +203,7 @@ std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>&
   return std::nullopt;
 }
 
-// Colours may differ, but rays have gone on from the polygons from which they would go on now.
+// Colors may differ, but the same polygons have to be specular as when the rays were traced.
 void require_same_kinds(const RayExchange& known, const Run& run) {
   const auto now = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
   const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();
@@ -269,7 +270,7 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
     return {std::move(exchange), std::move(light)};
   }
   require_same_kinds(exchange, run);
-  // Not stored, as it is of the materials.
+  // Not stored, because it depends on the materials.
   exchange.rows.lost.clear = clear_shares(mesh, run.world->between_patches());
   const BrightPatches now = bright_patches_of(run, mesh, light);
   for (PatchIndex i = 0; i < mesh.size(); ++i)

@@ -13,50 +13,52 @@
 
 namespace patchlight {
 
-/// Patches and lamps above this multiple of the mean exitance are bright. Measured; anything from 2 to 16 does.
+/// Patches and lamps with more than this multiple of the mean exitance are bright. Measured: values from 2 to 16 work
+/// equally well.
 inline constexpr double bright = 4;
 
-/// The lamps whose light is found apart from rows of rays, the strongest first: sides of polygons that emit more than
-/// `bright` times the mean over all patches, as many as are 16 triangles and convex quadrilaterals, and 64 where there
-/// are mirrors, in which rays over the hemisphere would find the others by luck.
+/// The lamps that are sampled separately from rows of rays, strongest first. They are sides of polygons that emit more
+/// than `bright` times the mean over all patches. Their number is limited to 16 triangles and convex quadrilaterals, or
+/// 64 with mirrors, in which hemisphere rays would rarely find the others.
 std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
                                   const Tracing& tracing);
 
-/// Rows of rays, and the light of lamps, which is found apart from them: few rays of a row meet a small bright source,
-/// and smoothing would blur its shadows.
+/// The light that goes with rows of rays. The light of lamps is computed separately: few rays of a row meet a small
+/// bright source, and smoothing would blur its shadows.
 struct RayLight {
-  LitProblem lit;                      ///< the problem as lit_problem() has it: with all that patches emit
-  std::vector<std::uint8_t> is_apart;  ///< per patch: what it emits counts in by_lamps, not in rows
-  std::array<Field, 2> by_lamps;       ///< irradiance straight from them, by both halves of the samples, W/m^2
+  LitProblem lit;                      ///< the problem of lit_problem(), with the full exitance
+  std::vector<std::uint8_t> is_apart;  ///< per patch: 1 if its exitance counts in by_lamps, not in rows
+  std::array<Field, 2> by_lamps;       ///< direct irradiance by separate lamps, by both halves of the samples, W/m^2
   Field lamp_standard_error;           ///< of its mean, W/m^2
-  DirectIrradiance in_mirrors;  ///< what the same lamps send over mirrors and clear faces; empty where there are none
-  std::vector<float> distance;  ///< as TracedRows has it
-  std::vector<std::uint8_t> is_missed;  ///< per patch: bright, but known rows have sent no ray there on purpose
+  /// Irradiance by the same lamps over mirrors and clear faces; empty where there are none.
+  DirectIrradiance in_mirrors;
+  std::vector<float> distance;          ///< TracedRows::distance
+  std::vector<std::uint8_t> is_missed;  ///< per patch: 1 if it is bright and known rows did not sample it directly
   double rays_per_patch = 0;            ///< mean number over the hemisphere
-  std::optional<DirectIrradiance> as_found = {};  ///< of luminaires, sun and sky, over whole patches, where the next
-                                                  ///< mesh may take it over
+  /// The irradiance by luminaires, sun and sky, over whole patches, if the next mesh may reuse it.
+  std::optional<DirectIrradiance> as_found = {};
 };
 
-/// Rows as they were traced, of the geometry alone, and the light that goes with them, as means over whole patches.
+/// Rows as traced, which depend on geometry only, and the light that goes with them, as means over whole patches.
 struct ExchangeAndLight {
   RayExchange exchange;
   RayLight light;
 };
 
-/// With lamps_apart(): light that all surfaces emit alike, and the light of many lamps, stays in the rows, which send
-/// rays towards bright patches on purpose. By Steps::ray_exchange where it is given; lamps that it does not know are
-/// found apart as well, by shadow rays. \throws Cancelled; InputError when these are too many.
+/// Traces rows and computes the light of lamps_apart(). Light that all surfaces emit alike, and the light of many
+/// lamps, stays in the rows, which also sample bright patches directly. Uses Steps::ray_exchange if given; lamps that
+/// it does not know are sampled by shadow rays. \throws Cancelled; InputError when these are too many.
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});
 
-/// The same in some of its bands, by the run `part` that has no others: rows are the same, the light that lamps send
+/// The same in some of the bands, by the run `part` that has only these. Rows are the same; the light that lamps send
 /// straight through clear faces is computed again.
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
                            const Plan& plan, const PatchMesh& mesh);
 
-/// The exitance of patches without lamps apart, W/m^2.
+/// The exitance of patches without the separate lamps, W/m^2.
 Field emitted_in_rows(const RayLight& light);
 
-/// The irradiance by light that comes from no patch of the rows, W/m^2.
+/// The irradiance by all light outside the rows, W/m^2.
 Field direct_of(const RayLight& light);
 
 }  // namespace patchlight

@@ -122,7 +122,7 @@ ExpectedCost expected_cost(const Scene& scene, const Plan& plan, const PatchMesh
     return cost;
   }
   cost.form_factor_seconds = assembly_seconds(scene, plan, mesh) + 2.5e-7 * plan.assembly.lost_share_rays * n;
-  // Closure takes some 50 to 250 products with the matrix, a solver some 15; a product of n^2 entries.
+  // Closure takes about 50 to 250 products with the matrix, a solver about 15. A product has n^2 entries.
   const double products = (plan.assembly.close ? 100 : 0) + (simulates(plan, Effect::interreflection) ? 15 : 0);
   cost.solve_seconds = 1.1e-10 * products * n * n;
   return cost;

@@ -8,18 +8,18 @@
 
 namespace patchlight {
 
-/// The kept sides of the polygons in patches with edges of `max_edge` metres at most that end at the plan's lines of
-/// contact. What of them lies whole under another face, or inside of a solid that stands on its polygon, as sixteen
-/// places on each tell, is left out.
+/// Cuts the kept sides of the polygons into patches with edges of at most `max_edge` meters, which end at the plan's
+/// lines of contact. Leaves out patches that lie completely under another face, or inside a solid that stands on their
+/// polygon. Sixteen points per patch decide.
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge, const Occluder& occluder);
 
-/// The same for whoever has no occluder: one is made where the plan has lines of contact, and only there.
+/// The same without a given occluder: builds one if the plan has lines of contact.
 PatchMesh open_patches(const Scene& scene, const Plan& plan, double max_edge);
 
-/// The mesh that the plan says, nested when error bars are wanted.
+/// The first mesh of the plan, nested if the plan has error bars.
 NestedMesh first_mesh(const Scene& scene, const Plan& plan, const Occluder& occluder);
 
-/// The same for whoever has no occluder.
+/// The same without a given occluder.
 NestedMesh first_mesh(const Scene& scene, const Plan& plan);
 
 }  // namespace patchlight

@@ -19,7 +19,7 @@ namespace {
 
 // The patches of a scene without its light.
 struct SceneInPatches {
-  Request request;  // as it is carried out
+  Request request;  // as executed
   Plan plan;
   PatchMesh mesh;
   std::shared_ptr<const World> world;

@@ -11,12 +11,12 @@ namespace patchlight {
 
 /// Rows of rays between the patches of a scene.
 struct RayFormFactors {
-  Request request;  ///< as it was carried out
+  Request request;  ///< as executed
   Plan plan;
   PatchMesh mesh;
   RayExchange exchange;
-  Eigen::VectorXd area;     ///< m^2, exposed, of what patches hold
-  Eigen::VectorXd row_sum;  ///< the share that each patch sees: both of light of the mean of all colors
+  Eigen::VectorXd area;     ///< m^2, the exposed area, times the share that a clear patch holds
+  Eigen::VectorXd row_sum;  ///< the visible share of each patch. Area and row_sum are for the mean of all colors
   Diagnostics notes = {};   ///< on polygons that lie one on the other
 };
 

@@ -8,17 +8,16 @@
 
 namespace patchlight {
 
-/// Bands that clear faces and mirrors treat alike. Form factors over these are one set for each colour of light.
+/// Bands for which clear faces and mirrors are alike. Each color of light has one set of form factors over these faces.
 struct LightColour {
   std::vector<Eigen::Index> bands;  ///< of the run's scene
   std::shared_ptr<const World> world;
 };
 
-/// The colours that a run by rows of rays distinguishes; empty where one set of form factors holds for all bands.
+/// The colors that a ray run distinguishes; empty where one set of form factors serves all bands.
 std::vector<LightColour> light_colours(const Run& run);
 
-/// A mesh solved in each colour by itself, as if it was all light that there is, and put together. \throws Cancelled,
-/// InputError.
+/// Solves a mesh in each color separately, and combines the solutions. \throws Cancelled, InputError.
 SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
                              StageClock& clock);
 

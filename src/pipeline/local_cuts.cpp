@@ -210,8 +210,8 @@ constexpr LocalGoal goal_of_second_mesh{
     .error = usual_error / error_margin, .new_patches = 0.25, .more_to_lights = 0.5, .more_of_rows = 1.5};
 
 std::string errors_of_first(const AccuracyStep& errors) {
-  return "the first mesh, of " + std::to_string(errors.patches) + " patches, errs by " + percent(errors.total, 2) +
-         " %: ";
+  return "the first mesh, of " + std::to_string(errors.patches) + " patches, has an error of " +
+         percent(errors.total, 2) + " %: ";
 }
 
 Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
@@ -223,17 +223,17 @@ Diagnostics notes_on_cuts(const MeshToSolve& next, const AccuracyStep& errors) {
   std::size_t doubled = 0;
   for (std::size_t i = 0; i < next.known.place.size(); ++i) doubled += is_doubled(i) ? 1 : 0;
   const std::string cuts = cut > 0 ? std::to_string(cut) + " of them are cut" : "";
-  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches take more rays" : "";
-  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "on a second one " + cuts +
+  const std::string rays = doubled > 0 ? std::to_string(doubled) + " patches get more rays" : "";
+  return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "in a second one " + cuts +
                                             (cuts.empty() || rays.empty() ? "" : ", and ") + rays +
-                                            "; accuracy.local_cuts=false stays with the first"}};
+                                            "; accuracy.local_cuts=false keeps the first"}};
 }
 
 Diagnostics notes_on_memory(const LocalCuts& cuts, const AccuracyStep& errors, const Plan& plan) {
   const std::size_t patches = cuts.mesh.mesh.patches.size();
   const double bytes = memory_of_next_mesh(patches, times_the_rays(cuts), plan);
   return {{DiagnosticCode::second_mesh, errors_of_first(errors) + "a second one, of " + std::to_string(patches) +
-                                            " patches, would err less and is not made, as it " +
+                                            " patches, would have a smaller error and is not made: it " +
                                             memory_refused(bytes, plan.resources)}};
 }
 
@@ -342,8 +342,8 @@ SecondMesh second_mesh(const Run& run, SolvedMesh& solved, const AccuracyStep& e
 Plan with_note_on_second_mesh(Plan plan, PatchIndex patches) {
   if (!makes_second_mesh(plan, patches) || fits_as_next_mesh(patches, 1, plan)) return plan;
   plan.notes.push_back({DiagnosticCode::second_mesh,
-                        "a second mesh, which is made where the first errs by more than " + percent(usual_error) +
-                            " %, does not fit into the memory beside the first: it " +
+                        "a second mesh, which is made where the first has an error of more than " +
+                            percent(usual_error) + " %, does not fit into the memory beside the first: it " +
                             memory_refused(memory_of_next_mesh(patches, 1, plan), plan.resources)});
   return plan;
 }

@@ -20,7 +20,7 @@
 namespace patchlight {
 namespace {
 
-// Exchange areas before closure with the errors of their entries; what is known from the mesh before is taken over.
+// Exchange areas before closure, with the errors of their entries. Known entries come from the previous mesh.
 Assembly assembly_of(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Occluder& occluder = run.world->between_patches();
   if (!known.exchange) return assemble_exchange_areas(mesh, occluder, plan.assembly, run.observer);
@@ -72,13 +72,13 @@ MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts
 }  // namespace
 
 RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found) {
-  // 1. Rows in the colour of this run.
+  // 1. Rows in the color of this run.
   RayExchange& exchange = found.exchange;
   RayLight& light = found.light;
   exchange.rows = weighed_rows(std::move(exchange.rows), mesh, run.world->between_patches());
   light.distance = std::move(exchange.rows.distance);
 
-  // 2. Means over the exposed part of each patch, which is known but for its own error.
+  // 2. Means over the exposed part of each patch, which has an error of its own.
   const LostShare& lost = exchange.rows.lost;
   RadiosityProblem& problem = light.lit.problem;
   if (cuts_locally(run, mesh.size()) && !run.is_part && light.lit.direct_standard_error.size() > 0)

@@ -18,10 +18,10 @@ struct RayTransportAndLight {
   RayLight light;
 };
 
-/// Rows and light in the colour of a run, as means over what is exposed of each patch.
+/// Rows and light in the color of a run, as means over the exposed part of each patch.
 RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAndLight found);
 
-/// Exchange areas S_ij = A_i F_ij of a mesh before closure; with rows on demand there are none.
+/// Exchange areas S_ij = A_i F_ij of a mesh before closure; empty for rows on demand.
 struct RawTransport {
   Exchange exchange;
   TransportFacts facts;
@@ -35,26 +35,27 @@ struct MeshTransport {
   Eigen::VectorXd area;                ///< exposed, m^2
   TransportFacts facts;
   std::optional<Assembly> assembly;               ///< with error bars: exchange areas before closure
-  std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed up over parents
+  std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed over parents
   std::unique_ptr<RaysWithPockets> rays;          ///< with rows of rays, else null
-  std::optional<RayLight> light;                  ///< with them, the light that goes with them
+  std::optional<RayLight> light;                  ///< with rows of rays, the light of RayLight
 };
 
 /// lit_problem() of a mesh with the exposed parts of its patches. \throws Cancelled.
 LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport);
 
-/// All pairs, with visibility from shadow rays, unless Steps::exchange knows them; and the share of each patch's
-/// hemisphere from which no patch is seen. With rows on demand (AssemblyOptions::storage) the lost shares alone: the
-/// exchange areas are of no patch and the facts have neither row sums nor counts. With error bars exchange areas and
-/// lost shares that are `known` are taken over; without them the rate of bare rays is measured. \throws Cancelled.
+/// Computes the exchange areas of all pairs, with visibility from shadow rays, unless Steps::exchange gives them. Also
+/// computes the share of each patch's hemisphere in which no patch is visible. With rows on demand
+/// (AssemblyOptions::storage) only lost shares are computed: the exchange areas have no patches, and the facts neither
+/// row sums nor counts. With error bars, `known` exchange areas and lost shares are reused; without, the rate of bare
+/// rays is measured. \throws Cancelled.
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known);
 
-/// The same from rows of rays which are known.
+/// The same from known rows of rays.
 RawTransport raw_transport(RayTransportAndLight by_rays);
 
-/// The same after closure: each row sums up to what its patch sees. Without AssemblyOptions::close the rows are as they
-/// were found. Rows on demand are not closed, either, whatever the plan says; their facts stay those of `raw`. The
-/// mesh, and for rows on demand the run's tracing, have to outlive the transport. \throws Cancelled.
+/// The transport after closure: each row sums to the visible share of its patch. Rows stay unchanged without
+/// AssemblyOptions::close, and rows on demand in any case; their facts are those of `raw`. The mesh must outlive the
+/// transport, and for rows on demand the run's tracing, too. \throws Cancelled.
 MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMesh& mesh, RawTransport raw);
 
 }  // namespace patchlight

@@ -57,7 +57,7 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
   return {in_all(found.irradiance), in_all(found.standard_error)};
 }
 
-// Light of which some is known from the mesh before; the rest with as many more rays as are wanted.
+// Light that is partly known from the previous mesh. The rest is computed with the requested multiple of rays.
 DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                                           LightingOptions options) {
   if (!known.light) return direct_irradiance_as_planned(run, plan, mesh, options);

@@ -11,10 +11,9 @@
 namespace patchlight {
 namespace {
 
-// Bars of the mesh as they add up over these patches: each band smaller by what noise adds to the squares, which
-// cancels in their sum, but for its standard error. mean_around() shares what is found at a patch with those around it,
-// so that the squares of its parts add up to one in 7.1 where these are quadrilaterals and one in 10.8 where they are
-// triangles.
+// Mesh error bars for sums over many patches. Each band is reduced by the noise in the squares, which cancels in their
+// sum except for its standard error. mean_around() shares each patch's value with its neighbors. So the squares of its
+// parts add up to 1/7.1 for quadrilaterals and 1/10.8 for triangles.
 Field mesh_bars_of_many(const Simulation& simulation, const Eigen::VectorXd& weight) {
   const ErrorBars& bars = *simulation.error_bars;
   if (bars.mesh_noise.size() == 0) return bars.mesh;

@@ -9,7 +9,7 @@
 namespace patchlight {
 namespace {
 
-// Warns where a noticeable share of the light on mirrors goes on by chains that are not followed.
+// Warns if a noticeable share of the light on mirrors takes chains that are not followed.
 Diagnostics notes_on_chains(const World& world) {
   const Tracing& tracing = world.tracing();
   if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
@@ -19,7 +19,7 @@ Diagnostics notes_on_chains(const World& world) {
   text.precision(2);
   text << "patchlight follows " << found.chains.size() << " chains of mirrors and clear faces; up to "
        << 100 * std::min(1.0, found.unfollowed_share)
-       << " % of the light that lamps, luminaires and sun send to these faces goes on by other chains. Error bars "
+       << " % of the light that lamps, luminaires and sun send to these faces takes other chains. Error bars "
           "include it as if each face scattered it evenly";
   return {{DiagnosticCode::unfollowed_reflection, text.str()}};
 }
@@ -55,8 +55,8 @@ Diagnostics notes_on_hidden_lamps(const Scene& scene, const Simulation& simulati
     notes.push_back(
         {DiagnosticCode::lost_light,
          "material '" + name +
-             "' emits, but little light comes from it: faces of it lay under others when the form factors were "
-             "made, as they were dark; compute them again with the present lamps"});
+             "' emits, but little light comes from it: some of its faces lay under others when the form factors "
+             "were computed, because they were dark; compute them again with the present lamps"});
   return notes;
 }
 

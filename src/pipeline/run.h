@@ -16,7 +16,7 @@
 
 namespace patchlight {
 
-/// The context that all meshes of a run have in common.
+/// The context shared by all meshes of a run.
 struct Run {
   const Scene& scene;  ///< World::planned_scene()
   const Request& request;
@@ -25,34 +25,34 @@ struct Run {
   std::shared_ptr<const World> world;
   const Steps& with;
   const Observer& observer;
-  bool is_part = false;  ///< it has some of the bands of another run, see LightColours
+  bool is_part = false;  ///< it has some bands of another run, see `LightColour`
 };
 
-/// The parts of a run that its steps give.
+/// The parts of a run that its steps provide.
 Given given_by(const Steps& with);
 
-/// How often the rays of each patch of a mesh are doubled; empty: never.
+/// How many times the rays of each patch of a mesh are doubled; empty: 0.
 struct MoreRays {
   std::vector<std::uint8_t> to_lights = {};  ///< to luminaires, sun and sky
   std::vector<std::uint8_t> of_rows = {};    ///< over the hemisphere
 };
 
-/// Known quantities from the mesh before.
+/// Known quantities from the previous mesh.
 struct Known {
-  std::vector<PatchIndex> place;     ///< per patch: the same one in that mesh, or no_patch
-  std::optional<Assembly> exchange;  ///< its exchange areas before closure; none: all are new
-  std::optional<LostShare> lost;     ///< its lost shares; none: all are new
-  std::optional<DirectIrradiance> light =
-      {};  ///< that of luminaires, sun and sky over its whole patches; none: all is new
-  std::vector<PatchIndex> light_place = {};  ///< per patch: that whose light is its own, or no_patch; with `light`
+  std::vector<PatchIndex> place;               ///< per patch: the same one in that mesh, or no_patch
+  std::optional<Assembly> exchange;            ///< its exchange areas before closure; none: all are new
+  std::optional<LostShare> lost;               ///< its lost shares; none: all are new
+  std::optional<DirectIrradiance> light = {};  ///< by luminaires, sun and sky over its whole patches; none: all is new
+  /// Per patch: the previous patch with the same light, or no_patch; used with `light`.
+  std::vector<PatchIndex> light_place = {};
   MoreRays more_rays = {};
   std::uint64_t meshes = 0;  ///< how many were solved before; decides the random seed, see seed_on()
 };
 
-/// A mesh whose solution is wanted. Pairs have no error bars without parents, and rows of rays narrower ones.
+/// A mesh to be solved. Without parents, pairs have no error bars, and those of rows of rays are narrower.
 struct MeshToSolve {
   NestedMesh mesh;
-  Plan plan;  ///< that of the run, with the storage, samples and solver's error that this mesh is worth
+  Plan plan;  ///< the run's plan, with storage, samples and solver error for this mesh
   Known known;
 };
 
@@ -62,27 +62,29 @@ struct SolvedMesh {
   NestedMesh mesh;
   std::optional<Assembly> raw = {};  ///< with parents: exchange areas before closure
   Eigen::VectorXd interest = {};     ///< with parents: 1 for each patch whose error counts, else 0
-  Eigen::VectorXd effects = {};      ///< with parents: effects_of_parents(); by pairs also of what light_bar is of
-  Eigen::VectorXd noise = {};        ///< with parents: noise_of_parents()
+  /// With parents: effects_of_parents(); with pairs also the effects of the errors in light_bar.
+  Eigen::VectorXd effects = {};
+  Eigen::VectorXd noise = {};      ///< with parents: noise_of_parents()
   Eigen::VectorXd row_noise = {};  ///< with rows of rays and parents: the part of each patch in the square of noise_bar
-  Eigen::VectorXd light_noise = {};  ///< and in that of light_bar
-  double share_cuts_mend = 0;  ///< with rows of rays and parents: the share of the square of the mesh's error that some
-                               ///< cuts of patches would take away
-  double noise_bar = 0;        ///< with parents: the error by rays between patches, as relative_bar()
-  double light_bar = 0;        ///< with parents: and by those towards luminaires, sun and sky
+  /// With rows of rays and parents: the part of each patch in the square of light_bar.
+  Eigen::VectorXd light_noise = {};
+  /// With rows of rays and parents: the share of the squared mesh error that a few cuts would remove.
+  double share_cuts_mend = 0;
+  double noise_bar = 0;  ///< with parents: the relative_bar() of the noise of rays between patches
+  double light_bar = 0;  ///< with parents: that of rays towards luminaires, sun and sky
   std::optional<DirectIrradiance> light = {};  ///< with rows of rays, for another mesh: light over whole patches
-  MoreRays more_rays = {};                     ///< that it was solved with
+  MoreRays more_rays = {};                     ///< those of this solution
 };
 
-/// The plan's notes, those on polygons that lie one on the other and, where patches are not refined, on lamps that are
-/// close to what they light: else error bars see these.
+/// The plan's notes, and notes on polygons that lie on each other. Without refinement also notes on lamps close to the
+/// surfaces that they light; with refinement the error bars show these.
 Diagnostics notes_on_run(const World& world, const Plan& plan);
 
-/// Warns about emitting patches whose stacking order has changed since the form factors were made, e.g. a lamp that is
-/// let into a ceiling and was dark then.
+/// Warns about emitting patches whose stacking order has changed since the form factors were computed, e.g. a recessed
+/// lamp that was dark then.
 Diagnostics notes_on_hidden_lamps(const Scene& scene, const Simulation& simulation);
 
-/// Measures the cost of each stage, all its rounds together.
+/// Measures the cost of each stage, summed over all rounds.
 class StageClock {
  public:
   /// Ends a stage; the next one begins.

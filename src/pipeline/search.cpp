@@ -48,7 +48,7 @@ std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracySte
   return Needed{needed, last.total * std::pow(last.patches / most, at_least)};
 }
 
-// Throws MemoryError with the memory that so many patches take, and the error that can be reached.
+// Throws MemoryError with the memory that the patches need, and the reachable error.
 [[noreturn]] void refuse(const Plan& plan, const Needed& needed) {
   const auto& [patches, reachable] = needed;
   throw MemoryError("accuracy.relative_error=" + percent(*plan.accuracy.relative_error, 2) + "% needs about " +
@@ -58,7 +58,7 @@ std::optional<Needed> out_of_reach(const Plan& plan, std::span<const AccuracySte
                     percent(reachable, 2) + "% or more\nhint: or improve a part only: accuracy.interest");
 }
 
-// The plan of a mesh with so many rays of a patch in the mean, for its memory.
+// The plan of a mesh with this mean number of rays per patch, for estimating its memory.
 Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
   plan.assembly.rays = static_cast<int>(std::ceil(times_the_rays(cuts) * plan.assembly.rays));
   return plan;
@@ -120,17 +120,17 @@ double new_pairs(const AccuracyStep& step) {
   return all * all - known * known;
 }
 
-// The number of patches for which so many times the pairs of the last mesh have to be found.
+// The number of patches of a mesh that needs `times` as many new pairs as the last one did.
 double patches_with(double times, const AccuracyStep& step) {
   return std::sqrt(static_cast<double>(step.patches) * step.patches + std::max(0.0, times) * new_pairs(step));
 }
 
-// How many parents can be cut, each into sixteen new patches, before there are so many.
+// The number of parents that can be cut, each into sixteen new patches, up to `patches` patches.
 std::size_t cuts_up_to(double patches, const AccuracyStep& step) {
   return static_cast<std::size_t>(std::max(0.0, patches - step.patches) / 16);
 }
 
-// AccuracyOptions::solver_part: a tenth of the accuracy, unless that or the solver's relative error was asked for.
+// AccuracyOptions::solver_part: a tenth of the accuracy, unless the request sets it or the solver's relative error.
 std::optional<double> part_of_solver(const Run& run, double accuracy) {
   const std::optional<double>& asked = run.plan.accuracy.solver_part;
   return asked || run.request.solver.relative_error ? asked : std::optional(0.1 * accuracy);
@@ -250,15 +250,14 @@ bool Search::may_go_by_rays(const Plan& plan) const {
 }
 
 Plan Search::gone_by_rays(const Plan& plan) {
-  notes_.push_back(
-      {DiagnosticCode::rows_of_rays,
-       "form factors of more than " + std::to_string(steps_.back().patches) +
-           " patches are rows of rays (assembly.storage=rays), as all pairs of the patches that the accuracy "
-           "takes do not fit into the memory"});
+  notes_.push_back({DiagnosticCode::rows_of_rays,
+                    "form factors of more than " + std::to_string(steps_.back().patches) +
+                        " patches are rows of rays (assembly.storage=rays), because all pairs of the patches that the "
+                        "accuracy needs do not fit into the memory"});
   return by_rays(plan);
 }
 
-// Where the accuracy is out of reach with all pairs, the next mesh goes by rays, unless pairs were asked for.
+// If the accuracy is out of reach with pairs, the next mesh uses rays, unless the request requires pairs.
 Plan Search::stored_for(const SolvedMesh& solved, double accuracy) {
   const Plan& plan = solved.simulation.plan;
   if (run_.plan.accuracy.seconds || steps_.back().total <= accuracy) return plan;
@@ -306,11 +305,11 @@ std::optional<MeshToSolve> Search::next(SolvedMesh& solved) {
   if (!solved.simulation.solution.converged || steps_.empty()) return std::nullopt;
   if (!refines(run_.plan.accuracy)) return second(solved);
   const AccuracyStep& step = steps_.back();
-  // Without an accuracy the error is to be halved as long as there is time.
+  // Without an accuracy, the goal is half of the error, as long as there is time.
   const double accuracy = run_.plan.accuracy.relative_error.value_or(step.total / 2);
   const bool is_by_rays = solved.simulation.plan.assembly.storage == Storage::rays;
-  // Pairs stop 10 % below the accuracy, as errors are estimates. A mesh by rays is made for an error lower than that,
-  // and another one would cost as much again.
+  // Pairs stop 10 % below the accuracy, because errors are estimates. A mesh by rays aims at a lower error than that,
+  // and another mesh would cost as much again.
   if ((is_by_rays ? 1 : 1.1) * step.total <= accuracy || steps_.size() == 20) return std::nullopt;
   // No mesh reduces the error that a given tolerance leaves.
   if (run_.request.solver.relative_error && step.solver > accuracy) return std::nullopt;
@@ -335,7 +334,7 @@ std::optional<MeshToSolve> Search::next_by_pairs(SolvedMesh& solved, double accu
   const bool all_new = after.storage != before.storage || samples_of(after) != samples_of(before);
   if (!all_new && !more.has_more_patches) return std::nullopt;
 
-  // 2. Known quantities. The solver's error is never asked to be larger than on the mesh before.
+  // 2. Known quantities. The solver's relative error never increases from one mesh to the next.
   const bool keeps_known = !all_new && keeps_entries(after.storage);
   MeshToSolve to_solve{std::move(more.mesh.mesh), more.plan, {}};
   to_solve.plan.accuracy.solver_part = part_of_solver(run_, accuracy);

@@ -7,30 +7,30 @@
 
 namespace patchlight {
 
-/// The way to an accuracy: finer and finer meshes, with more samples where their noise limits it, until the plan's
-/// accuracy is reached or its time is up; by rows of rays where all pairs of the next mesh do not fit into the memory,
-/// unless these or a time were asked for. A run that asks for none has one mesh, and a second one where
-/// AccuracyOptions::local_cuts pay.
+/// The refinement loop: finer meshes, with more samples where noise dominates, until the plan's accuracy is reached or
+/// its time is up. It switches to rows of rays if the pairs of the next mesh do not fit into memory, unless the request
+/// sets pairs or a time. Without a requested accuracy there is one mesh, and a second one if
+/// AccuracyOptions::local_cuts reduce the error enough.
 class Search {
  public:
-  /// Time counts from here on. `run` has to outlive the search.
+  /// Starts the clock. `run` must outlive the search.
   explicit Search(const Run& run);
 
-  /// The mesh to begin with: Steps::mesh, else first_mesh().
+  /// The first mesh: Steps::mesh if given, else first_mesh().
   MeshToSolve first() const;
 
-  /// Keeps a solution, where Steps::keeps_unfinished, in case the run is stopped before there is a better one: that of
-  /// the first mesh before its errors are known, every later one with them, as long as the memory has room for it.
+  /// Keeps a solution, with Steps::keeps_unfinished, in case the run stops before a better one exists. The first mesh
+  /// is kept before its errors are known, later ones with their errors, as long as memory permits.
   void keep(const Simulation& simulation);
   /// The last kept solution.
   const std::optional<Simulation>& kept() const { return kept_; }
 
-  /// The solved mesh with the accuracy of all meshes until now, as Steps::look gets it on the way to an accuracy.
+  /// Adds the accuracy of all meshes so far to a solved mesh, for Steps::look during refinement.
   SolvedMesh noted(SolvedMesh solved);
 
-  /// The next mesh after one that was noted; none when that is good enough, or time is up. Takes from `solved` all that
-  /// the next one can use. \throws MemoryError when the accuracy takes more memory than the request allows, with the
-  /// accuracy that can be reached.
+  /// The next mesh after one passed to noted(); empty when its accuracy is sufficient or time is up. Moves everything
+  /// that the next mesh can reuse out of `solved`. \throws MemoryError, with the reachable accuracy, when the requested
+  /// accuracy needs more memory than allowed.
   std::optional<MeshToSolve> next(SolvedMesh& solved);
 
  private:
@@ -54,7 +54,7 @@ class Search {
   std::vector<AccuracyStep> steps_;
   Diagnostics notes_;
   std::optional<Simulation> kept_;
-  PatchIndex known_ = 0;  // patches of the last mesh of which something was known from the one before
+  PatchIndex known_ = 0;  // patches of the last mesh with quantities known from the previous one
   MoreRays more_rays_;    // of the last mesh
 };
 

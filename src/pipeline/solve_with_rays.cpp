@@ -71,7 +71,7 @@ std::array<const Field*, 7> fields_of(const RayLight& light) {
           &light.lit.direct_standard_error};
 }
 
-// True when each band of a field is the factor times the one from which it is said to follow, but for some rounding.
+// True when each band of a field is its factor times its source band, up to rounding.
 bool follows(const Field& field, const SolvedBands& bands) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     for (Eigen::Index band = 0; band < field.cols(); ++band) {
@@ -100,7 +100,8 @@ SolvedBands needed_bands(const RayLight& light, const SolverOptions& options) {
 
 Field squares_in(const SolvedBands& bands, const Field& error) { return reduced(error, bands).square(); }
 
-// B = E + rho o H of light that is not reflected twice, H by lamps and what the rows carry of the rest.
+// B = E + rho o H for light that is reflected once. H is the irradiance by separate lamps plus the light of other
+// emitters in the rows.
 ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
   ConservingSolution once;
   once.gathered = gathered_by_halves(transport, problem.exitance);
@@ -141,7 +142,7 @@ struct SingleErrors {
   Field of_lights;  // standard errors of lamps and of lights that are no patches
 };
 
-// A mean square over n draws has a relative standard error of sqrt(2 / n). Of many patches each draw costs more.
+// A mean square over n draws has a relative standard error of sqrt(2 / n). Draws cost more with many patches.
 std::uint64_t number_of_draws(PatchIndex patches) {
   return patches > very_many_patches ? 4 : patches > many_patches ? 8 : 16;
 }
@@ -177,10 +178,10 @@ Eigen::ArrayXd variance_of_missed(const RayLight& light, const Field& sources, c
   return area_sum(squares, area.cwiseProduct(row_sum)) / (light.rays_per_patch * total(area));
 }
 
-// The variance of the sum of each row, over its square. A share s estimated by n independent rays has a variance of
-// s (1 - s) / n, and s n of them meet patches. Shadow rays towards bright patches are counted as well, though the sum
-// does not follow from them: rays over the hemisphere are stratified, so that by their own number alone bars are too
-// wide (tests/property/rays_test.cpp). Where sides without patches are seen the rays that have looked for these count.
+// The relative variance of the sum of each row. A share s estimated by n independent rays has a variance of s (1 - s) /
+// n, and s n of them hit patches. Shadow rays towards bright patches count as well, although the sum does not depend on
+// them. The reason: hemisphere rays are stratified, so their number alone would make the bars too wide
+// (tests/property/rays_test.cpp). Where backs are visible, the rays that searched for them count.
 Eigen::ArrayXd variance_of_row_sums(const RaysWithPockets& transport, const PatchMesh& mesh,
                                     const Eigen::VectorXd& row_sum, const LostShare& lost) {
   const double small = small_area(mesh);

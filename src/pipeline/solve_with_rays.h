@@ -56,30 +56,29 @@ struct ConservingSolution {
 ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
 
-/// The problem for rows of rays, in the bands that need it: the light of each other band, and its errors, are those of
-/// one of these times a factor.
+/// The problem for rows of rays in the needed bands. The light of each other band, and its errors, are a factor times
+/// those of one needed band.
 struct NeededLight {
   SolvedBands bands;
-  RadiosityProblem problem;  ///< for the rows: exitance without lamps apart, whose light is direct
-  Field of_lamps;            ///< variance of the irradiance by lamps apart, (W/m^2)^2
-  Field of_others;           ///< of that by luminaires, sun, sky and mirrors; empty where there is none
+  RadiosityProblem problem;  ///< for the rows: exitance without the separate lamps, whose light is direct
+  Field of_lamps;            ///< variance of the irradiance by separate lamps, (W/m^2)^2
+  Field of_others;           ///< variance of that by luminaires, sun, sky and mirrors; empty where there is none
 };
 
-/// All bands where each is to be solved, SolverOptions::every_band or with a reference.
+/// All bands if each has to be solved: with SolverOptions::every_band or with a reference.
 NeededLight needed_light(const RayLight& light, const SolverOptions& options);
 
-/// A solution by rows of rays, the standard error of its irradiance, and the part of the error that patches have in
-/// common, W/m^2.
+/// A solution by rows of rays, with the standard error of its irradiance and the correlated part of the error, W/m^2.
 struct RaySolution {
   Solution solution;
   Field standard_error;
   std::vector<Field> correlated_errors;  ///< Simulation::correlated_errors
 };
 
-/// Solves B = E + rho o (F B + H_direct) with lamps apart and all flux kept (ConservedFlux), gathers once more by each
+/// Solves B = E + rho o (F B + H_direct) with separate lamps and conserved flux (ConservedFlux). Gathers again by each
 /// half of the rays, and smooths the light from other patches: docs/theory/ray-method-solution.md. The error combines
-/// the difference of the halves, the error of the row sums, which both halves share, the bias of smoothing, and the
-/// reflections of all of these. \throws Cancelled; InputError for solvers that rows of rays cannot serve.
+/// the difference of the halves, the error of the row sums that both halves share, the bias of smoothing, and the
+/// reflections of these. \throws Cancelled; InputError for solvers that do not support rows of rays.
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
                             const RayLight& light, const TransportFacts& facts, const SolverOptions& options);
 

@@ -63,15 +63,15 @@ Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& p
 // Solves with some options.
 using Solve = std::function<Solution(const SolverOptions& options)>;
 
-// A solution and the relative error that was asked of the solver.
+// A solution and the relative error requested of the solver.
 struct SolvedWith {
   Solution solution;
   double relative_error = 0;
 };
 
-// The solution by some options, or with a smaller relative error until the solver's part of the error of interest is no
-// more than AccuracyOptions::solver_part: a bound on all light together says little about the light in a dim room. Ends
-// with the last one that has converged. `simulation` has the plan, the problem and the mesh.
+// Solves, and reduces the relative error until the solver's part of the error of interest is at most
+// AccuracyOptions::solver_part. A bound relative to all light hardly limits the error in a dim room. Returns the last
+// solution that has converged. `simulation` has the plan, the problem and the mesh.
 SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, const SolverOptions& by,
                               const Solve& solve) {
   SolverOptions options = by;

@@ -12,17 +12,17 @@
 
 namespace patchlight {
 
-/// Irradiance straight from the patches that emit, F E, by their rows alone. W/m^2. \throws Cancelled.
+/// Direct irradiance by emitting patches, F E, from their rows alone, W/m^2. \throws Cancelled.
 Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
                           const Observer& observer);
 
-/// `solve`, or when interreflection is left out the light that comes straight from the lamps: H = F E + H_direct, and
-/// B = E + rho o H, in which nothing has been reflected twice.
+/// Returns `solve`, or without interreflection a function for direct light only: H = F E + H_direct and B = E + rho o
+/// H.
 SolveWith solver_as_planned(SolveWith solve, const Plan& plan);
 
-/// The solution of B = E + rho o (F B + H_direct) on a mesh, and where the light went. By the solver's relative error
-/// of the mesh's plan, or by less where solve_for_interest() finds that it takes less: Simulation::plan tells which was
-/// asked for at last. \throws Cancelled.
+/// The solution of B = E + rho o (F B + H_direct) on a mesh, and its light balance. The solver's relative error is that
+/// of the mesh's plan, or a smaller one from solve_for_interest(). Simulation::plan records the last one. \throws
+/// Cancelled.
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem);
 
 }  // namespace patchlight

@@ -30,9 +30,9 @@
 namespace patchlight {
 namespace {
 
-// Light straight from sources at the quarters of patches, in the needed bands. Only differences within a patch count:
-// those of patches below a sixty-fourth of the mean area of the goal's are taken as 0. (With a sixteenth, those of
-// frames and sills of windows would be missing.)
+// Direct light at the quarters of patches, in the needed bands. Only differences within a patch count. They are set to
+// 0 for patches below 1/64 of the mean area of the goal's patches. A limit of 1/16 would miss the frames and sills of
+// windows.
 std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
                                         const QuarterLook& look) {
   const PatchMesh& mesh = simulation.mesh;
@@ -54,9 +54,8 @@ std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simula
   return direct;
 }
 
-// unseen_differences() of a simulation, those of the light of luminaires, sun and sky among them, in all bands;
-// `needed` is the simulation in those that differ, and `rays` start at each quarter of a patch in each half.
-// Throws Cancelled.
+// unseen_differences() of a simulation in all bands, including those of luminaires, sun and sky. `needed` is the
+// simulation in the needed bands; `rays` start at each quarter of a patch in each half. Throws Cancelled.
 UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const InNeededBands& needed,
                                         const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
   QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
@@ -84,7 +83,7 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
   return solve(*transport, coarse, options).radiosity;
 }
 
-// How far two independent values of the irradiance straight from the lamps are apart.
+// The difference of two independent values of the direct irradiance from the lamps.
 Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw, const Field& exitance) {
   const Eigen::VectorXd& area = simulation.problem.area;
   AssemblyOptions again = simulation.plan.assembly;

@@ -5,11 +5,11 @@
 
 namespace patchlight {
 
-/// The solved mesh with error bars, and where finer patches would pay; without, where the plan wants none. \throws
-/// InputError when nothing of the plan's interest is there or reflects light.
+/// Adds error bars and the effects of finer patches to a solved mesh, if the plan has error bars. \throws InputError
+/// when no patch of the plan's interest exists or reflects light.
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport);
 
-/// The share of the patches that emit.
+/// The fraction of patches that emit.
 double share_of_lamps(const RadiosityProblem& problem);
 
 }  // namespace patchlight

@@ -11,7 +11,7 @@
 namespace patchlight {
 namespace {
 
-// Computed when it is first asked for.
+// Computed on first use.
 class LightingOnDemand {
  public:
   const Lighting& of(const Scene& scene, const Tracing& tracing) {

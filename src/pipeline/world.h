@@ -12,27 +12,27 @@
 
 namespace patchlight {
 
-/// A scene with what is derived from it for a plan, computed once: rays, and the light of luminaires, sun and sky. All
-/// steps of a run and all views of its solution share it. Immutable; safe to use from several threads.
+/// A scene with the data derived from it for a plan, computed once: rays, and the light of luminaires, sun and sky. All
+/// steps of a run and all views of its solution share it. Immutable; thread-safe.
 class World {
  public:
-  /// `scene` as read, for a plan made of it.
+  /// `scene` is the scene as read; `plan` is made from it.
   World(std::shared_ptr<const Scene> scene, const Plan& plan);
   ~World();
 
-  /// The same faces with some of the bands alone, in this order; in_bands() has the rules.
+  /// The same faces with only some of the bands, in this order; in_bands() has the rules.
   std::shared_ptr<const World> in_bands(const std::vector<Eigen::Index>& bands, const Plan& plan) const;
 
-  /// As read.
+  /// The scene as read.
   const Scene& scene() const { return *scene_; }
 
-  /// With the lights that the plan simulates, and with its colors: scene_as_planned().
+  /// The scene with the lights and colors that the plan simulates: scene_as_planned().
   const Scene& planned_scene() const { return *planned_; }
 
-  /// As sensors see it, which may stand where no patch is: scene_for_sensors().
+  /// The scene for sensors, which may stand where no patch is: scene_for_sensors().
   const Scene& sensor_scene() const { return *for_sensors_; }
 
-  /// The rays, which the two scenes above have in common.
+  /// The ray tracers, shared by the two scenes above.
   const Tracing& tracing() const { return tracing_; }
 
   /// For rays between points of patches.
@@ -44,7 +44,7 @@ class World {
   /// The light of planned_scene(). Computed at the first call, as are the others.
   const Lighting& lighting() const;
 
-  /// The light of planned_scene() in its brightest band, where Plan::lamp_colour says that all light has one color.
+  /// The light of planned_scene() in its brightest band, if Plan::lamp_colour shows that all light has one color.
   const Lighting& lighting_in_one_band() const;
 
   /// The light of sensor_scene().

@@ -11,7 +11,7 @@
 namespace patchlight {
 namespace {
 
-// A part of a request as messages name it, and whether it is asked for.
+// A part of a request as messages name it, and whether the request sets it.
 struct Asked {
   std::string part;
   bool is_asked = true;
@@ -61,7 +61,7 @@ Asked kept_errors(const Request& request) { return {"assembly.keep_errors", requ
 
 Asked max_rows(const Request& request) { return {"solver.max_rows", request.solver.max_rows.has_value()}; }
 
-// The option that asks for error bars.
+// The option that requests error bars.
 Asked error_bars(const AccuracyOptions& accuracy) {
   if (accuracy.relative_error) return {"accuracy.relative_error"};
   if (accuracy.seconds) return {"accuracy.seconds"};
@@ -70,7 +70,7 @@ Asked error_bars(const AccuracyOptions& accuracy) {
 
 Asked rays(const Request& request) { return {"assembly.rays", request.assembly.rays != AssemblyOptions().rays}; }
 
-// Refuses those of `others` that are asked for beside `one`.
+// Refuses those of `others` that the request sets together with `one`.
 void require_alone(const Asked& one, std::initializer_list<Asked> others, const std::string& why) {
   if (!one.is_asked) return;
   for (const Asked& other : others) {
@@ -118,7 +118,7 @@ void require_solver_for(const Request& request) {
     throw InputError("solver.reference", "must be empty: a reference needs the mesh of the run");
 }
 
-// Conjugate gradients stand where nothing is asked for: the plan takes gmres for them.
+// Conjugate gradients are the default; the plan replaces them by gmres.
 void require_solver_for_sheets(const Request& request, const Scene& scene) {
   const Solver solver = request.solver.solver;
   if (solver == Solver::cg || !takes_diagonal(solver)) return;
@@ -148,8 +148,8 @@ void require_rows_possible(const Request& request, const Given& given) {
                                           name_of(request.assembly.storage) + "\nhint: assembly.storage=rays");
 }
 
-// The options that leave no error bars, and why: these take the closed matrix of the automatic estimator, made in the
-// run, and the solution to be exact but for the solver's error.
+// The options that rule out error bars, with reasons. Error bars need the closed matrix of the automatic estimator,
+// computed in the run, and a solution that is exact up to the solver's error.
 std::vector<std::pair<Asked, const char*>> obstacles_to_error_bars(const Request& request, const Given& given) {
   const char* const found_in_the_run = "error bars need form factors that are computed in this run";
   const char* const closed = "error bars need closure";

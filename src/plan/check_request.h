@@ -8,22 +8,22 @@
 
 namespace patchlight {
 
-/// Checks the parts of a request against each other, whatever the scene is like. Messages name fields as in
-/// "accuracy.relative_error", with the value where it counts: "effects.skip=sun".
-/// \throws InputError when parts of the request cannot be together.
+/// Checks the parts of a request against each other, without a scene. Messages name fields as in
+/// "accuracy.relative_error", with the value where it matters: "effects.skip=sun". \throws InputError when two parts
+/// contradict each other.
 void check(const Request& request, const Given& given = {});
 
-/// The same, and what the scene does not have. \throws InputError as well when nothing in it has a name of
+/// The same, and checks the request against the scene. \throws InputError also when nothing in the scene has a name in
 /// AccuracyOptions::interest.
 void check(const Request& request, const Scene& scene, const Given& given = {});
 
-/// The part of a request that needs pairs, as messages name it; nothing if rays will do. Such parts are given matrices,
-/// meshes and solvers, other estimators and numbers of samples, and solvers that take columns or symmetry.
+/// The part of a request that requires the pair method, as messages name it; nothing if rays will do. Such parts are
+/// given matrices, meshes and solvers, other estimators, numbers of samples, and solvers that need columns or symmetry.
 std::optional<std::string> part_that_takes_pairs(const Request& request, const Given& given = {});
 
-/// Form factors of pairs are one number for all bands. `chosen` is the request `asked` with its storage decided, and
-/// `coloured` counts materials whose transmittance or specular reflectance differs between bands.
-/// \throws InputError when there are such materials and no rows of rays.
+/// Form factors of pairs are one number for all bands. `chosen` is the request `asked` with its storage decided.
+/// `coloured` counts the materials whose transmittance or specular reflectance differs between bands. \throws
+/// InputError when there are such materials and the storage is not rows of rays.
 void require_rays_for_colours(std::size_t coloured, const Request& chosen, const Request& asked,
                               const Given& given = {});
 

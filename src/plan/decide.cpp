@@ -52,8 +52,7 @@ double highest_scattered(const Material& material) {
   return (material.reflectance + material.diffuse_transmittance).maxCoeff();
 }
 
-// A place behind which there is no light stays as it is: transmittances of faces that take no part colour daylight,
-// too.
+// Every material counts for transmittance: faces without kept sides color daylight, too.
 bool is_grey(const Scene& scene, const std::vector<const Material*>& in_use) {
   return std::all_of(in_use.begin(), in_use.end(), [](const Material* m) { return is_grey(*m); }) &&
          std::all_of(scene.materials.begin(), scene.materials.end(),
@@ -151,7 +150,7 @@ EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& 
   return facts;
 }
 
-// The decision that the facts call for, or the one that the request asks for instead.
+// The decision from the facts, unless the request overrules it.
 Decision overruled(Decision by_facts, const Request& request) {
   const bool wanted = contains(request.effects.force, by_facts.effect) ||
                       (by_facts.simulate && !contains(request.effects.skip, by_facts.effect));
@@ -198,13 +197,13 @@ Decision colour(const EffectFacts& facts) {
     return {Effect::colour, false, "the scene has one band", "nothing: one band is solved in any case"};
   const std::string all = std::to_string(facts.bands) + " bands";
   if (facts.grey && facts.lamp_colour) {
-    return {Effect::colour, false, "no surface reflects one band better than another, and all lights have one colour",
+    return {Effect::colour, false, "no surface reflects one band better than another, and all lights have one color",
             "one band is solved instead of " + all};
   }
   const std::string dark = facts.dark_bands.empty() ? "" : "; " + numbers_of(facts.dark_bands) + " without light";
   const auto solved = static_cast<std::size_t>(facts.bands) - facts.dark_bands.size();
   return {Effect::colour, true,
-          (facts.grey ? "lights differ in colour" : "some surfaces reflect one band better than another") + dark,
+          (facts.grey ? "lights differ in color" : "some surfaces reflect one band better than another") + dark,
           std::to_string(solved) + " of " + all + " are solved, together"};
 }
 
@@ -219,11 +218,10 @@ std::string first_names(const std::vector<DarkSolid>& solids) {
 
 // Nothing is left out of sides that are given.
 std::optional<Decision> given_sides(Effect effect, const Request& request) {
-  if (request.mesh.kept_sides) return Decision{effect, true, "the sides that take part are given", "unknown"};
+  if (request.mesh.kept_sides) return Decision{effect, true, "the included sides are given", "unknown"};
   if (request.mesh.sides == Sides::automatic) return {};
-  return Decision{effect, true,
-                  std::string("the sides that take part are given: mesh.sides=") + name_of(request.mesh.sides),
-                  "unknown; with mesh.sides=auto the plan leaves out what no light reaches"};
+  return Decision{effect, true, std::string("the included sides are given: mesh.sides=") + name_of(request.mesh.sides),
+                  "unknown; mesh.sides=auto leaves out sides that no light reaches"};
 }
 
 Decision reach(const EffectFacts& facts, const Request& request) {
@@ -240,8 +238,7 @@ Decision backs(const EffectFacts& facts, const Request& request) {
   if (const auto decision = given_sides(Effect::backs, request)) return *decision;
   if (facts.turned_away == 0)
     return {Effect::backs, true, "no side is known to look into the dark", "no side is left out for it"};
-  return {Effect::backs, false,
-          "they look away from all light: out of what encloses the lamps, or nothing is before them",
+  return {Effect::backs, false, "they face away from all light: out of the shell around the lamps, or towards nothing",
           counted(facts.turned_away, "side") + " of faces without patches"};
 }
 
@@ -271,7 +268,7 @@ Decision sky(const EffectFacts& facts) {
   return daylight(Effect::sky, facts, "1024 shadow rays per patch");
 }
 
-// By what is decided about interreflection.
+// Follows the decision about interreflection.
 Decision closure(const Request& request, bool interreflects) {
   Decision decision{Effect::closure, true, "light is reflected more than once: errors of row sums would add up",
                     "a few products with the matrix"};
@@ -287,13 +284,13 @@ Decision closure(const Request& request, bool interreflects) {
 
 Decision textures(const EffectFacts& facts) {
   if (facts.textured == 0)
-    return {Effect::textures, false, "no material has a picture whose place on a face is known", "nothing"};
+    return {Effect::textures, false, "no material has a texture with known coordinates on a face", "nothing"};
   return {Effect::textures, true,
           std::to_string(facts.textured) + " of " + counted(facts.materials, "material") +
-              (facts.textured == 1 ? " has a picture" : " have pictures") +
-              "; texels differ from the mean of their picture by up to " + rounded(100 * facts.texture_deviation) +
+              (facts.textured == 1 ? " has a texture" : " have textures") +
+              "; texels differ from the mean of their texture by up to " + rounded(100 * facts.texture_deviation) +
               " %, rms",
-          "the mean of a picture over each patch"};
+          "the mean of a texture over each patch"};
 }
 
 std::string counted_specular(const EffectFacts& facts) {
@@ -306,15 +303,15 @@ std::string counted_specular(const EffectFacts& facts) {
 // Shadow rays between pairs of patches do not see by way of mirrors.
 Decision mirrors(const EffectFacts& facts, const Request& request) {
   if (!has_reflections(facts))
-    return {Effect::mirrors, false, "no face reflects light without scattering it", "rays that go on from mirrors"};
+    return {Effect::mirrors, false, "no face reflects light without scattering it", "rays that continue from mirrors"};
   const std::string what = counted_specular(facts);
   if (request.assembly.storage != Storage::rays)
     return {Effect::mirrors, false,
-            "form factors of pairs do not see by way of mirrors (" + what +
+            "the pair method does not follow light over mirrors (" + what +
                 "): light that these reflect counts as absorbed; assembly.storage=rays follows it",
             "rows of rays instead of pairs"};
   return overruled({Effect::mirrors, true, "light is reflected without being scattered, by " + what,
-                    "a ray more for each time that a ray is reflected"},
+                    "one more ray for each reflection of a ray"},
                    request);
 }
 
@@ -322,19 +319,19 @@ Decision mirrors(const EffectFacts& facts, const Request& request) {
 std::vector<Decision> undecidable(const EffectFacts& facts) {
   std::vector<Decision> decisions;
   const auto add = [&](Effect effect, std::size_t count, const std::string& reason) {
-    if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the answer lacks it"});
+    if (count > 0) decisions.push_back({effect, false, "not simulated: " + reason, "nothing: the result lacks it"});
   };
   if (facts.coloured_specular > 0)
     decisions.push_back({Effect::bands_of_panes, true,
-                         "colours of " + counted(facts.coloured_specular, "clear or mirroring material") +
+                         "colors of " + counted(facts.coloured_specular, "clear or mirroring material") +
                              " change light between patches",
-                         "form factors and a solution for each of these colours, from the same rays"});
-  add(Effect::gloss, facts.gloss, counted(facts.gloss, "material") + " with gloss or metal, taken for matt");
-  add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", taken for opaque");
+                         "form factors and a solution for each of these colors, from the same rays"});
+  add(Effect::gloss, facts.gloss, counted(facts.gloss, "material") + " with gloss or metal, simulated as matte");
+  add(Effect::glass, facts.glass, counted(facts.glass, "transparent material") + ", simulated as opaque");
   return decisions;
 }
 
-// An effect of which the scene has nothing can neither be forced nor skipped.
+// An effect that the scene does not have can neither be forced nor skipped.
 bool is_there(Effect effect, const EffectFacts& facts) {
   switch (effect) {
     case Effect::luminaires:
@@ -439,7 +436,7 @@ Diagnostics notes_on_overruling(const EffectFacts& facts, const Request& request
     for (const Effect effect : effects) {
       if (!is_there(effect, facts))
         notes.push_back({DiagnosticCode::idle_option,
-                         field + "=" + name_of(effect) + " changes nothing: the scene has nothing of it"});
+                         field + "=" + name_of(effect) + " changes nothing: the scene does not have this effect"});
     }
   };
   add("effects.force", request.effects.force);

@@ -181,8 +181,8 @@ std::vector<PatchIndex> patches_of(const std::vector<ImportanceHit>& hits, const
   return PatchLookup(mesh).patches_at(places);
 }
 
-// The importance of each patch, and whether it has enough hits to tell its parts apart. Otherwise it shares its
-// importance equally among its parts, whose own hits would be chance.
+// The importance of each patch, and whether it has enough hits to compare its parts. With fewer hits the parts share
+// the importance equally, since their own hits would be noise.
 struct PatchImportance {
   std::vector<double> of_patch;
   std::vector<std::uint8_t> has_many_hits;

@@ -18,10 +18,10 @@
 namespace patchlight {
 namespace {
 
-// The exchange areas, in float, half of a symmetric matrix. The rest is measured: what the program and its libraries
-// take, and the mesh, the fields and the results per patch.
+// The exchange areas, in float, half of a symmetric matrix. The rest is measured: the program and its libraries, and
+// the mesh, the fields and the results per patch.
 constexpr double bytes_per_pair = 2;
-constexpr double bytes_per_error = 0.5;  // standard errors, where they are wanted: one byte for two entries
+constexpr double bytes_per_error = 0.5;  // standard errors, if kept: one byte for two entries
 constexpr double bytes_per_patch = 1500;
 constexpr double bytes_of_next_mesh = 1000;  // per patch where rows of rays are refined
 constexpr double bytes_of_program = 50e6;
@@ -50,7 +50,7 @@ LightInMemory light_in_memory(const Plan& plan) {
   return {simulates(plan, Effect::colour), simulates(plan, Effect::mirrors)};
 }
 
-// Of the scene, and of the tree that finds polygons along a ray.
+// The scene and the tree of the ray tracer.
 double bytes_of_polygons(const Plan& plan) { return 1500 * static_cast<double>(plan.sides.front.size()); }
 
 double installed_bytes() {
@@ -77,8 +77,9 @@ Parts stored_as_rays(Parts parts) {
 // Pairs of more patches take tens of seconds, and rows of rays one or two: docs/concepts/pairs-and-rays.md.
 constexpr std::size_t most_patches_in_pairs = 10000;
 
-// Sides have few patches each: the error by the size of patches is larger than the noise of rays, which take much less
-// time than pairs. Not on the way to an accuracy, where faces are cut as it matters, and the noise of rays would limit.
+// True if sides have few patches each: the discretization error exceeds the noise of rays, which take much less time
+// than pairs. False during refinement to an accuracy, where faces are cut as needed and the noise of rays would limit
+// the accuracy.
 bool has_coarse_sides(const StoredLight& light, const Request& request) {
   return light.patches >= 1000 && light.patches < 32 * light.sides && !refines(request.accuracy);
 }
@@ -117,8 +118,8 @@ std::string gigabytes(double bytes) {
 }
 
 std::string memory_refused(double bytes, const Resources& resources) {
-  return "takes " + gigabytes(bytes) + ", and " + gigabytes(usable_memory(resources)) + " may be taken" +
-         (resources.memory ? " (resources.memory)" : " here");
+  return "takes " + gigabytes(bytes) + ", and " + gigabytes(usable_memory(resources)) +
+         (resources.memory ? " is allowed (resources.memory)" : " is available");
 }
 
 double memory_needed(std::size_t patches, const AssemblyOptions& assembly, const AccuracyOptions& accuracy,
@@ -161,7 +162,7 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
   const double usable = usable_memory(plan.resources);
   if (needed <= usable) return;
   const auto fitting = static_cast<long>(patches_that_fit(plan));
-  // Small faces take a patch each, however few are asked for.
+  // Each small face needs a patch of its own, whatever the requested number.
   const bool too_many_faces = !request.mesh.max_edge && static_cast<long>(patches_asked(request)) <= fitting;
   const std::string by_rays = advice_by_rays(patches, plan);
   const std::string hint = usable <= 2 * bytes_of_program ? ": the program itself needs " + gigabytes(bytes_of_program)
@@ -175,7 +176,7 @@ void require_memory(std::size_t patches, const Request& request, const Plan& pla
 
 std::size_t least_patches_with(const Scene& scene, const KeptSides& sides, double max_edge,
                                const ContactLines& contacts) {
-  // Too many to count are as good as the largest number.
+  // Numbers too large to count are clamped.
   const double by_area = std::min(kept_area(scene, sides) / (max_edge * max_edge), 1e18);
   return std::max(least_patches(scene, sides, contacts), static_cast<std::size_t>(by_area));
 }

@@ -55,16 +55,16 @@ std::string note_on_coarse(const std::string& faces, std::size_t corners, std::s
   std::ostringstream text;
   text.precision(2);
   text << faces << " with an outline of up to " << corners
-       << " corners, finer than the patches: these follow one of the same area without up to " << left_out
-       << " of them, nowhere farther away than " << outline_tolerance * max_edge << " m";
+       << " corners, finer than the patches: these follow an outline of the same area without up to " << left_out
+       << " of them, at most " << outline_tolerance * max_edge << " m away";
   return text.str();
 }
 
 std::string note_on_kept(const std::string& faces, std::size_t corners) {
   return faces + " with an outline of up to " + std::to_string(corners) +
-         " corners where other faces meet it or it turns, finer than the patches asked for: these are kept, so that "
-         "each side takes " +
-         std::to_string(corners - 2) + " patches at least; an outline of fewer corners takes fewer";
+         " corners where other faces meet it or it turns, finer than the requested patches: these are kept, so that "
+         "each side needs " +
+         std::to_string(corners - 2) + " patches at least; an outline of fewer corners needs fewer";
 }
 
 // True when the point lies over the polygon, seen along its normal.
@@ -117,9 +117,9 @@ Diagnostics notes_on_close_lamps(const Scene& scene, const Occluder& occluder, d
   if (lamp == no_polygon) return {};
   std::ostringstream note;
   note << count << (count == 1 ? " lamp faces" : " lamps face")
-       << " a surface nearer than its patches are large (nearest: " << place_of(scene, scene.polygons[lamp]) << ", "
+       << " a surface nearer than the size of its patches (nearest: " << place_of(scene, scene.polygons[lamp]) << ", "
        << nearest << " m, patches up to " << max_edge
-       << " m): the light between them is spread too far and the answer may be wrong by a factor; "
+       << " m): the light between them is spread too far and results may be wrong by a large factor; "
        << advice_for(scene, nearest);
   return {{DiagnosticCode::close_lamp, note.str(), count}};
 }
@@ -137,11 +137,12 @@ Diagnostics notes_on_left_out_sides(const Scene& scene, const KeptSides& kept, S
     for (const Side side : {Side::front, Side::back}) left_out += is_kept(now, p, side) && !is_kept(kept, p, side);
   }
   if (left_out == 0) return notes;
-  notes.push_back({DiagnosticCode::lost_light,
-                   "with these lamps " + counted(left_out, "side") +
-                       " of faces would take part that did not when the form factors were made: light that arrives "
-                       "there is lost" +
-                       advice_to_recompute});
+  notes.push_back(
+      {DiagnosticCode::lost_light,
+       "with these lamps " + counted(left_out, "side") +
+           " of faces would be included that were left out when the form factors were computed: light that arrives "
+           "there is lost" +
+           advice_to_recompute});
   return notes;
 }
 
@@ -183,7 +184,7 @@ Diagnostics notes_on_luminaires_behind(const Scene& scene) {
       if (trouble.empty() || !lies_over(luminaire.position, corner_points(scene, p), normal)) continue;
       notes.push_back({DiagnosticCode::misplaced_luminaire,
                        "luminaire '" + luminaire.name + "' (" + luminaire.place + ") lies " + trouble + " (" +
-                           place_of(scene, scene.polygons[p]) + "); move it if that is not meant"});
+                           place_of(scene, scene.polygons[p]) + "); move it if this is not intended"});
       break;
     }
   }

@@ -40,13 +40,13 @@ bool simulates(const std::vector<Decision>& decisions, Effect effect) {
 
 // How finely the kept sides are cut.
 struct PatchSize {
-  double max_edge = 0;      // metres
-  std::size_t patches = 0;  // about so many, or the least that the edge allows
-  std::size_t around = 0;   // of these those of the surroundings of the goal
+  double max_edge = 0;      // meters
+  std::size_t patches = 0;  // approximate number, or the smallest one that the edge allows
+  std::size_t around = 0;   // of these, the patches in the surroundings of the goal
   Diagnostics notes;
 };
 
-// The kept sides with their lines, and what is known of the number of their patches.
+// The kept sides with their lines, and the known facts about the number of patches.
 struct Outlined {
   const Scene& scene;
   const KeptSides& sides;  // those of the goal
@@ -55,13 +55,13 @@ struct Outlined {
   const Goal* goal = nullptr;
 };
 
-// The longest edge of parents whose parts are about so many. Of parents large ones are cut in four, and small ones stay
-// whole: of a model with many small faces the number of parents lies anywhere between a quarter of them and all.
+// The longest edge of parents that have about `wanted` parts in total. Large parents are split in four; small ones stay
+// whole. With many small faces the number of parents lies anywhere between a quarter of `wanted` and all of it.
 double parents_edge_for(EdgeSearch& search, std::size_t wanted) {
   // A mesh that no memory holds is refused later, without being made for it.
   if (wanted > 5'000'000) return 2 * search.edge_for(wanted);
   const double edge = search.edge_for(wanted / 4);
-  // Where nearly every patch is a face as it is, few tell whether the large faces are cut.
+  // Where nearly every patch is a whole face, the count hardly depends on whether the large faces are split.
   const auto least = static_cast<double>(search.least_patches());
   const auto beyond_faces = [least](double patches) { return std::max(0.0, patches - least); };
   if (beyond_faces(search.nested_patches_with(edge)) >= 0.8 * beyond_faces(static_cast<double>(wanted))) return edge;
@@ -75,13 +75,13 @@ std::size_t patches_wanted(std::size_t asked, std::size_t least, const Request& 
   return least > 1000 ? std::max(asked, least + least / 4) : asked;
 }
 
-// About so many patches there will be, or the least that the edge asked for allows.
+// The approximate number of patches, or the smallest one that the requested edge allows.
 std::size_t expected_patches(const Outlined& of, const Request& request) {
   if (request.mesh.max_edge) return least_patches_with(of.scene, of.sides, *request.mesh.max_edge, of.contacts);
   return patches_wanted(patches_asked(request), of.search.least_patches(), request);
 }
 
-// The largest edge for the number of patches that is asked for.
+// The largest edge for the requested number of patches.
 PatchSize patch_size_for(std::size_t asked, const Outlined& of, const Request& request) {
   const std::size_t least = of.search.least_patches();
   const double share = of.goal != nullptr ? of.goal->share_of_surroundings : 0;
@@ -120,8 +120,8 @@ AssemblyOptions decided(AssemblyOptions assembly, const Request& request, bool c
   return assembly;
 }
 
-// By what is simulated. With light that is not reflected again the rows of the lamps are enough, and no matrix is
-// needed. By force every pair takes its rays, also those between which nothing is found to stand.
+// Follows the decisions about effects. If light is not reflected again, the rows of the lamps are enough and no matrix
+// is needed. Forced occlusion traces rays for every pair, including pairs with nothing between them.
 AssemblyOptions decided(const Request& request, const EffectFacts& facts, const std::vector<Decision>& decisions,
                         const Given& given) {
   AssemblyOptions assembly = decided(request.assembly, request, simulates(decisions, Effect::closure));
@@ -132,7 +132,7 @@ AssemblyOptions decided(const Request& request, const EffectFacts& facts, const 
   return assembly;
 }
 
-// Of sheets R is not diagonal, and may have negative eigenvalues.
+// With sheets R is not diagonal, and may have negative eigenvalues.
 SolverOptions decided(SolverOptions solver, bool every_band, const AssemblyOptions& assembly,
                       const EffectFacts& facts) {
   if (facts.sheets > 0 && solver.solver == Solver::cg) solver.solver = Solver::gmres;
@@ -156,7 +156,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   const auto coverings = std::make_shared<const Coverings>(find_coverings(scene, sides));
   // Form factors that are given belong to a mesh that knows of no light.
   const bool knows_lights = !given.form_factors && !given.ray_rows && !given.mesh;
-  // An edge that is asked for is that of all patches.
+  // A requested edge applies to all patches.
   const bool has_goal = knows_lights && !asked.mesh.max_edge;
   const std::shared_ptr<const Goal> goal =
       has_goal ? find_goal(scene, sides, *coverings, asked.accuracy.interest, asked.assembly.seed) : nullptr;
@@ -181,7 +181,7 @@ Plan make_plan(const Scene& scene, const Request& asked, const Given& given) {
   std::vector<Decision> decisions = decide(facts, request);
   require_light(scene, facts, decisions);
 
-  // One band stands for all where nothing changes the colour of light.
+  // One band stands for all where nothing changes the color of light.
   const bool one_colour = facts.grey && facts.lamp_colour.has_value();
   const bool in_colour = simulates(decisions, Effect::colour);
   const auto left_out = [&] { return notes_on_left_out_sides(scene, *asked.mesh.kept_sides, asked.mesh.sides); };

@@ -93,7 +93,7 @@ struct ShadowLine {
   PolygonIndex polygon;
   ContactLine line;
   std::array<bool, 2> is_loose;
-  double step;  // metres: how well loose ends are known
+  double step;  // meters: the accuracy of loose ends
 };
 
 struct ShadowSearch {
@@ -188,7 +188,7 @@ std::vector<ShadowLine> ShadowSearch::lines_of(const Silhouette& edge) const {
   return lines;
 }
 
-// Where a line meets another of the same plane, as a part of its length; nothing where it passes by the other.
+// The intersection of a line with another in the same plane, as a fraction of its length; nothing if they do not cross.
 std::optional<double> meeting(const ContactLine& line, const Point& from, const Point& to, double near) {
   const Vector along = line.to - line.from;
   const Vector other = to - from;
@@ -200,7 +200,7 @@ std::optional<double> meeting(const ContactLine& line, const Point& from, const 
   return (from - line.from).cross(other).dot(turn) / turn.squaredNorm();
 }
 
-// Moves loose ends to what they nearly reach: to the nearest of the polygon's edges and other lines.
+// Moves each loose end to the nearest edge of the polygon or other line, if it nearly reaches it.
 void tie_loose_ends(std::vector<ShadowLine>& lines, const std::vector<Point>& corners) {
   if (lines.size() > 5000) return;  // too many for a look at all pairs
   const std::vector<ShadowLine> before = lines;
@@ -241,9 +241,9 @@ bool is_along_outline(const ContactLine& line, const std::vector<Point>& corners
 // edges being 4.3 m long and not 1.7, and planning takes twice as long.
 constexpr std::size_t most_lines = 10'000;
 
-// Patches of this length and as many as these are cut off by lines at most.
+// Limits on the patches that lines cut off.
 struct Room {
-  double max_edge;   // metres
+  double max_edge;   // meters
   std::size_t most;  // patches
 };
 
@@ -261,7 +261,7 @@ Room room_for_lines(const Scene& scene, const Request& request, const KeptSides&
   return {edge, std::max<std::size_t>(1000, 3 * number_of_patches(scene, sides, edge))};
 }
 
-// A mesh that is refined begins with patches that tell nothing of the size of details.
+// A mesh that is refined starts with patches of a size unrelated to the details of the model.
 void set_detail(ContactLines& contacts, const Scene& scene, const Request& request, const KeptSides& sides) {
   const bool by_accuracy = refines(request.accuracy) && !request.mesh.max_edge;
   if (has_error_bars(request.accuracy) && !by_accuracy) contacts.of_edge = 0.5;
@@ -274,7 +274,7 @@ std::int64_t rounded_length(const ContactLine& line) {
   return std::llround(std::log2((line.to - line.from).squaredNorm()) * 0x1p20);
 }
 
-// The longest of the lines, so many of them; of equal ones the first.
+// The `number` longest lines; ties in their order.
 ContactLines longest_of(const ContactLines& all, std::size_t number) {
   if (number >= number_of(all)) return all;
   struct Place {
@@ -302,10 +302,11 @@ ContactLines longest_of(const ContactLines& all, std::size_t number) {
 Diagnostics note_on_bent_faces(const std::vector<std::uint8_t>& is_bent) {
   const auto number = std::count(is_bent.begin(), is_bent.end(), 1);
   if (number == 0) return {};
-  return {{DiagnosticCode::contact_lines,
-           std::to_string(number) +
-               " faces are bent by rounding, or beside such faces, by more than touching faces may be apart; on these "
-               "patches follow the outline alone, wherever others touch them"}};
+  return {
+      {DiagnosticCode::contact_lines,
+       std::to_string(number) +
+           " faces are bent by rounding, or lie beside such faces, by more than the tolerance for touching faces; on "
+           "these, patches follow the outline only, not the faces that touch them"}};
 }
 
 // The long lines are those on which much light depends: where all are too many, half of them are followed, or half of
@@ -327,8 +328,8 @@ ContactLines followed_of(const ContactLines& all, const Scene& scene, const Requ
 }
 
 std::string note_on_lines(std::size_t all, std::size_t followed) {
-  const std::string found = "of " + std::to_string(all) + " lines where faces touch, cross or end close before one, ";
-  return found + (followed == 0 ? "all cut off too many patches; patches follow the outlines of faces alone"
+  const std::string found = "of " + std::to_string(all) + " lines where faces touch, cross or nearly touch, ";
+  return found + (followed == 0 ? "all would create too many patches; patches follow the outlines of faces only"
                                 : "patches end at the " + std::to_string(followed) + " longest");
 }
 
@@ -338,7 +339,7 @@ PlannedLines contacts_for(const Scene& scene, const Request& request, const Kept
   const ContactLines all = find_contact_lines(scene, sides);
   if (all.everywhere)
     planned.notes.push_back({DiagnosticCode::contact_lines,
-                             "faces touch or cross nearly everywhere; patches follow the outlines of faces alone"});
+                             "faces touch or cross nearly everywhere; patches follow the outlines of faces only"});
   if (all.on.empty()) return planned;
   planned.lines = followed_of(all, scene, request, sides);
   if (const std::size_t number = number_of(planned.lines); number < number_of(all))
@@ -385,7 +386,7 @@ PlannedLines with_shadow_edges(PlannedLines planned, const Scene& scene, const R
   planned.notes.push_back(
       {DiagnosticCode::shadow_edges,
        std::to_string(number) + " edges of shadows of the sun or of luminaires without extent are " +
-           (fits ? "lines at which patches end" : "too many to cut faces at; patches reach over them")});
+           (fits ? "lines at which patches end" : "too many to cut faces at; patches extend across them")});
   if (fits) planned.lines = std::move(all);
   return planned;
 }

@@ -20,13 +20,13 @@ Scene with_spectra(Scene scene, const auto& change) {
   return scene;
 }
 
-// That of 1 in every band; of colours 179, to the last bit.
+// The luminance of 1 in every band; for RGB exactly 179.
 double luminance_of_ones(const Bands& bands) {
   const double ones = luminance(Spectrum::Ones(static_cast<Eigen::Index>(bands.size())), bands);
   return std::abs(ones - luminous_efficacy) <= tolerance_of_shapes * ones ? luminous_efficacy : ones;
 }
 
-// The same luminance without colour.
+// The same luminance without color.
 Scene without_colour(Scene scene) {
   const Bands bands = bands_of(scene);
   const double white = luminance_of_ones(bands);

@@ -34,7 +34,7 @@ constexpr std::array lamp_words = {"lights",       "lamp",     "lamps",     "des
 // Compounds, those of other languages among them, end in these.
 constexpr std::array lamp_endings = {"lampe", "lampen", "leuchte", "leuchten", "luminaire", "luminaires"};
 
-// After "light" these make a colour or a kind of material.
+// After "light" these words denote a color or a kind of material.
 constexpr std::array<std::string_view, 24> light_things = {
     "grey", "gray", "brown", "blue",  "green", "red",      "yellow", "beige",  "pink", "orange", "purple", "cyan",
     "wood", "oak",  "pine",  "maple", "stone", "concrete", "brick",  "marble", "tan",  "weight", "steel",  "metal"};
@@ -185,8 +185,8 @@ Diagnostics problems_with_luminaires(const Scene& scene) {
 constexpr double smallest_plausible = 0.4;
 constexpr double largest_plausible = 150;
 
-// One side of a site is short: the height of its buildings or terrain, 30 m, or of towers in a site ten times as wide.
-// Sides below a hundredth are flat.
+// A site has one short side: the height of its buildings or terrain, up to 30 m, or of towers in a site ten times as
+// wide. Sides below a hundredth of the longest count as flat.
 bool is_plausible(const Vector& sides) {
   const double longest = sides.maxCoeff();
   if (longest <= largest_plausible) return longest >= smallest_plausible;
@@ -375,10 +375,10 @@ Diagnostics problems_with_sensors(const Scene& scene) {
   for (const Sensor& sensor : largest.sensors) box.extend(sensor.point);
   const std::string line = largest.lines.empty() ? std::string() : ":" + std::to_string(largest.lines.front());
   return {{DiagnosticCode::implausible_size,
-           std::to_string(count) + " sensors are asked for, which takes long; the largest group, '" + largest.name +
-               "' (" + largest.file + line + "), has " + std::to_string(largest.sensors.size()) + " of them over " +
-               rounded(box.sizes().maxCoeff()) +
-               " m. Is the model in the unit that is stated? If it is, a larger spacing has fewer sensors",
+           std::to_string(count) + " sensors are requested, which takes a long time; the largest group, '" +
+               largest.name + "' (" + largest.file + line + "), has " + std::to_string(largest.sensors.size()) +
+               " of them over " + rounded(box.sizes().maxCoeff()) +
+               " m. Is the model in the stated unit? If it is, a larger spacing gives fewer sensors",
            count}};
 }
 

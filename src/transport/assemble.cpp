@@ -21,8 +21,8 @@
 namespace patchlight {
 namespace {
 
-// One of so many sampled pairs is sampled a second time, to estimate the error of all: some thousand pairs, or one in
-// 256. Of estimates, which are fewer and differ more, at least one in 16.
+// The interval of sampled pairs that are sampled a second time, to estimate the error of all. It gives a few thousand
+// pairs, or one in 256. Estimated pairs are fewer and vary more: at least one in 16.
 std::uint32_t audit_interval(PatchIndex size, bool estimated) {
   const double pairs = static_cast<double>(size) * size;
   return static_cast<std::uint32_t>(std::clamp(pairs / 16384, 4.0, estimated ? 16.0 : 256.0));
@@ -86,7 +86,7 @@ void Assembler::count(const Pair& pair, RowFacts& facts) const {
   facts.counts.blocked_pairs += kind_of(pair) == EntryKind::all_hidden ? 1 : 0;
 }
 
-// Samples one of many pairs again, independently: the difference tells the error of pairs like it.
+// Samples one of many pairs again, independently: the difference estimates the error of similar pairs.
 void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) const {
   const bool estimated = kind_of(pair) == EntryKind::estimated;
   if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size(), estimated) != 0) return;
@@ -324,7 +324,7 @@ Assembly estimate_by_contour(const PatchMesh& mesh, const Occluder& occluder, co
                              const Observer& observer) {
   const auto share_of_contour = [](const PatchShape& first, const PatchShape& second, const SampleMeans& means) {
     const double U = contour_exchange_area(first.corners, second.corners);
-    // Without a sample that says otherwise the pair counts as visible.
+    // If no sample has a weight, the pair counts as visible.
     return means.blocked != 0 ? U * means.visible / (means.visible + means.blocked) : U;
   };
   return pair_by_pair(mesh, occluder, options, {draw_by_area, share_of_contour}, observer);

@@ -203,7 +203,7 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   const auto lambda = row_multipliers(W, target.sum - raw_sums, target, area, observer);
   if (!lambda)
     return keep_exchange_areas(std::move(raw),
-                               "no symmetric exchange areas with this pattern have the wanted row sums");
+                               "no symmetric exchange areas with this pattern have the expected row sums");
   const Eigen::VectorXd variances = W.times(Eigen::VectorXd::Ones(area.size()));
   const Eigen::VectorXd change = lambda->cwiseProduct(variances) + W.times(*lambda);
   if (stays_positive(raw, *lambda, W)) {
@@ -217,7 +217,7 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   // 2. Scaling keeps every entry positive, but needs exact targets.
   if (!lost.closed()) return limited(std::move(raw), area, variances);
   const auto scale = row_scales(raw, target.sum, observer);
-  if (!scale) return keep_exchange_areas(std::move(raw), "no symmetric scaling has the wanted row sums");
+  if (!scale) return keep_exchange_areas(std::move(raw), "no symmetric scaling has the expected row sums");
   ExchangeAreas closed = changed(
       std::move(raw), [&](PatchIndex i, PatchIndex j, double entry) { return (*scale)[i] * entry * (*scale)[j]; });
   const Eigen::VectorXd remainder = (target.sum - row_sums(closed)).cwiseMax(0.0);

@@ -98,9 +98,9 @@ void DenseTransport::relax_block(PatchIndex I, const Field& irradiance, const Re
              relax({range, b.rows(range.begin, irradiance.rows()), irradiance, form_factors(range, range)}));
 }
 
-// Block row by block row: gathers from the blocks that are still to come, relaxes, and pushes the new radiosities to
-// them while the tiles are in the cache. What has been pushed to a block before, with the radiosities of now, is what
-// the next sweep needs to know F B of them without another pass.
+// Processes block rows in order: gathers from the later blocks, relaxes, and pushes the new radiosities to them while
+// the tiles are in the cache. The sums pushed to earlier blocks, by current radiosities, give the next sweep their F B
+// without another pass.
 Sweep DenseTransport::sweep(Sweep from, const Relax& there, const Relax& back) const {
   PackedField b(from.radiosity, Tiles::blocks(S_));
   PackedField pushed(Tiles::blocks(S_), b.bands);
@@ -253,8 +253,8 @@ void OnDemandTransport::for_exchange_areas(const ClusterPair& pair, LaneMask row
   }
 }
 
-// S_ij of these patches i with all patches j, in m^2; those of one cluster are found together. Of the two clusters of a
-// pair the one with the lower number comes first, as in the whole matrix: rounding depends on it.
+// S_ij of these patches i with all patches j, in m^2. Patches of one cluster are computed together. The cluster with
+// the lower number comes first in a pair, as in the whole matrix, because rounding depends on the order.
 std::vector<std::vector<float>> OnDemandTransport::rows(PatchRange patches) const {
   std::map<std::size_t, LaneMask> lanes_of;
   for (PatchIndex i = patches.begin; i < patches.end; ++i) {

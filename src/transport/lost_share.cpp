@@ -19,7 +19,8 @@
 namespace patchlight {
 namespace {
 
-// To find out whether a point is covered, so many rays start there over the hemisphere, and as many around the horizon.
+// To test whether a point is covered, this many rays start there over the hemisphere, and the same number around the
+// horizon.
 constexpr int rays_per_point = 8;
 
 struct Shares {
@@ -41,7 +42,7 @@ struct HemisphereSampler {
   Shares measure(PatchIndex patch, int rays, std::uint32_t seed) const;
 };
 
-// The ends of rays, at the first polygons where specular ones are as others.
+// The ends of rays; at the first polygons if specular polygons are treated like all others.
 std::vector<Seen> HemisphereSampler::look(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   if (!ends_at_specular) return sights.of_rays(patch, rays, seed);
   std::vector<Seen> seen;
@@ -87,8 +88,8 @@ std::vector<Ray> grazing_rays(const PatchMesh& mesh, PatchIndex patch, std::vect
   return groups;
 }
 
-// Rays that start together. Where some meet backs, and so may be inside a solid, a face is a back too where another
-// lies against it: of two faces in one place a ray meets either.
+// Rays with a common start. If some hit backs, the start may be inside a solid. Then a face also counts as a back if
+// another lies against it: of two coincident faces a ray hits either.
 std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::vector<Ray>& rays,
                                                    std::uint32_t seed) const {
   std::vector<Seen> seen = look(patch, rays, seed);
@@ -102,8 +103,8 @@ std::vector<Seen> HemisphereSampler::look_together(PatchIndex patch, const std::
   return seen;
 }
 
-// The shares by groups of rays from one point each. A point is covered when every ray from it meets a back, a face that
-// lies against the patch, or one against which another lies.
+// The shares by groups of rays from one point each. A point is covered when every ray from it hits a back, a face in
+// contact with the patch, or a face in contact with another.
 Shares HemisphereSampler::measure_groups(PatchIndex patch, const std::vector<Ray>& rays, std::uint32_t seed) const {
   const std::vector<Seen> seen = look_together(patch, rays, seed);
   int covered = 0, exposed = 0, escaped = 0, at_backs = 0, dark = 0, overlaid = 0;
@@ -135,8 +136,8 @@ Shares HemisphereSampler::measure(PatchIndex patch, int rays, std::uint32_t seed
     const std::vector<Seen> seen = look(patch, hemisphere_rays(patch, rays, 1, seed), seed);
     if (unseen(seen) == 0) return {static_cast<double>(count(seen, Sight::nothing)) / rays, 0, 0, 0, 0};
   }
-  // 2. Where backs are seen, groups of rays tell a patch that looks at backs from one that lies inside a solid. Where a
-  //    quarter of them find no part of a small one covered, that is enough.
+  // 2. If backs are visible, groups of rays distinguish a patch that looks at backs from one inside a solid. For a
+  //    small patch a quarter of them is enough, if they find no covered part.
   if (sees_backs && mesh.area[patch] < small) {
     const Shares few = measure_groups(patch, hemisphere_rays(patch, std::max(1, rays / 4), rays_per_point, seed), seed);
     if (few.covered == 0) return few;

@@ -220,8 +220,8 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
   trace_packets(pairs, begin, end);
 }
 
-// By the form factor from the smaller patch, or its estimate by the weights of the first samples. Where not one of them
-// has a weight, as the patches see each other in a sliver, it takes the most to find it.
+// Uses the form factor from the smaller patch, or its estimate by the weights of the first samples. If none of these
+// has a weight, because the patches see each other in a sliver, the effort is the largest.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
   if (pair.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
@@ -269,8 +269,9 @@ double PairSampler::exchange_area(const Pair& pair) const {
   const double n = pair.rays();
   const double m = pair.weighted_rays;
   if (share == 1 || m < 2) return share * U;
-  // U less the mean weight has the expectation 0. Times the visible share of the other samples, which it does not
-  // depend on, it takes away what the weights scatter; without those other samples it would be a bias.
+  // U minus the mean weight has the expectation 0: a control variate. It is multiplied by the visible share of the
+  // other samples, from which it is independent, and removes the scatter of the weights. With the same samples it would
+  // add a bias.
   const auto held_by_both = static_cast<double>(held(pair.first, pair.second));
   const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
@@ -312,7 +313,7 @@ ClusterHull hull_of(const PatchCluster& cluster, const PatchMesh& mesh, const st
   const PatchShape& first = shapes[cluster.patches[0]];
   const Vector& normal = first.normal;
   if (cluster.is_planar) {
-    // Of the lowest corner: the patches lie in one plane up to rounding only.
+    // The plane passes through the lowest corner: the patches lie in one plane up to rounding only.
     double lowest = normal.dot(first.centroid);
     for (const Point& corner : corners) lowest = std::min(lowest, normal.dot(corner));
     hull.behind = HalfSpace{normal, lowest};

@@ -19,12 +19,11 @@
 
 namespace patchlight {
 
-/// Shadow rays per second that the occluder traces when nothing else is done: at most `rays` of them, and at most
-/// 262,144, between random patches that face each other, four to a pair, on all threads. 0 when `rays` are too few to
-/// tell. Differs from run to run.
+/// The pure tracing rate in shadow rays per second. Traces up to `rays` rays, at most 262,144, between random facing
+/// patches, four per pair, on all threads. 0 if `rays` is too small to measure. Varies from run to run.
 double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t rays);
 
-/// Rays that are traced at once.
+/// The number of rays traced together.
 inline constexpr std::size_t rays_at_once = 4096;
 
 /// A shadow ray between two patches.
@@ -38,46 +37,46 @@ struct PairSample {
 /// A sample with uniformly distributed points on both patches: weight A_i A_j G.
 PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at);
 
-/// A pair of patches that face each other, and the result of its shadow rays so far.
+/// A pair of facing patches with the results of its shadow rays so far.
 struct Pair {
   PatchIndex first = 0;  ///< rays are sampled from here
   PatchIndex second = 0;
   SampleSet set;
   float unoccluded = 0;             ///< exchange area without occluders, m^2; -1 when not yet computed
   float weight = 0;                 ///< summed weights of its samples: geometry terms, 1/m^2
-  float seen_weight = 0;            ///< the same, each times what its shadow ray lets through (Occluder::transmittance)
-  float seen = 0;                   ///< summed shares that the rays of samples with a weight let through
-  float idle_seen = 0;              ///< of samples without: one end lies behind the other patch
+  float seen_weight = 0;            ///< the same, each times the transmittance of its shadow ray
+  float seen = 0;                   ///< summed transmittances of samples with a weight
+  float idle_seen = 0;              ///< of samples without a weight: one end lies behind the other patch
   std::uint32_t weighted_rays = 0;  ///< of samples with a weight
   std::uint32_t idle_rays = 0;      ///< of samples without
-  std::uint32_t effort = 1;         ///< times the usual number of samples
+  std::uint32_t effort = 1;         ///< multiple of the usual number of samples
   bool is_adjacent = false;         ///< sampled by solid angle
 
   std::uint32_t rays() const { return weighted_rays + idle_rays; }
-  /// The share of its rays that get through; where none carries weight, all count alike.
+  /// The mean transmittance of its rays; if none has a weight, all count alike.
   double visible_share() const;
 };
 
-/// Finds by shadow rays how much of each other the patches of pairs see.
+/// Samples the visibility between the patches of pairs by shadow rays.
 class PairSampler {
  public:
   PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& shapes, const Occluder& occluder,
               const AssemblyOptions& options);
 
-  /// `unoccluded` is -1 where it takes exact() to find it, which happens when a ray is free.
+  /// `unoccluded` is -1 if it needs exact(), which is called when a ray is free.
   Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
 
-  /// The share of the light between two patches that counts as exchanged: the part that clear ones hold back.
+  /// The share of the light between two patches that counts as exchanged: the part that clear patches hold back.
   float held(PatchIndex i, PatchIndex j) const { return held_[i] * held_[j]; }
 
   /// The exchange area without occluders, by closed form or quadrature in double precision, times held().
   float exact(PatchIndex i, PatchIndex j) const;
 
-  /// Traces as many rays for every pair as its form factor calls for, whatever the first of them meet: so the estimate
-  /// has no bias. The pairs come out in another order.
+  /// Traces the rays of every pair. Their number depends on the form factor, never on the hits of the first rays, so
+  /// the estimate has no bias. The order of the pairs changes.
   std::vector<Pair> sampled(std::vector<Pair> pairs) const;
 
-  /// All samples of one pair once more, independent of those before.
+  /// Samples one pair again, independent of the samples before.
   Pair sampled_again(const Pair& pair) const;
 
   /// The estimate from the pair's rays, m^2: docs/theory/occluded-form-factors.md, formula (5).
@@ -101,36 +100,36 @@ class PairSampler {
   SampleTable table_;
 };
 
-/// The data of a cluster that decide on its shafts.
+/// The data of a cluster for shaft tests.
 struct ClusterHull {
   Slabs slabs;
   std::optional<HalfSpace> behind;     ///< of a planar cluster
   std::vector<Point> corners;          ///< points whose convex hull holds all patches
-  bool is_covered = false;             ///< in part, by polygons that lie on those of its patches
-  bool is_clear = false;               ///< some patch is one of a clear polygon
+  bool is_covered = false;             ///< at least partly, by polygons that lie on those of its patches
+  bool is_clear = false;               ///< some patch belongs to a clear polygon
   std::vector<PolygonIndex> polygons;  ///< of the patches
 };
 
-/// Some patches of a cluster: bit k stands for its patch k.
+/// A set of patches of a cluster: bit k stands for patch k.
 using LaneMask = std::uint16_t;
 inline constexpr LaneMask all_lanes = 0xffff;
 
-/// Two clusters, or one with itself: row <= column, so that every pair of patches comes in one order only.
+/// Two clusters, or one with itself: row <= column, so every pair of patches has one order only.
 struct ClusterPair {
   std::size_t row = 0;
   std::size_t column = 0;
 };
 
-/// How the exchange areas between two clusters are found.
+/// How the exchange areas between two clusters are computed.
 enum class PairClass {
-  averted,  ///< all are 0, as one cluster lies behind the other
-  hidden,   ///< all are 0, as one polygon stands between them
+  averted,  ///< all are 0: one cluster lies behind the other
+  hidden,   ///< all are 0: one polygon hides the clusters from each other
   free,     ///< nothing can stand between them: the unoccluded values
   sampled   ///< shadow rays
 };
 
-/// The pairs of patches of a mesh, cluster by cluster, as the automatic estimator takes them. The exchange area of a
-/// pair follows from its own two patches, whichever other pairs are asked for. Keeps references to mesh and occluder.
+/// The pairs of patches of a mesh by cluster, for the automatic estimator. The exchange area of a pair depends on its
+/// own two patches only, not on the other requested pairs. Keeps references to mesh and occluder.
 class ClusterPairs {
  public:
   ClusterPairs(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options);
@@ -143,9 +142,8 @@ class ClusterPairs {
 
   PairClass class_of(const ClusterPair& pair) const;
 
-  /// Calls use(i, j, unoccluded exchange area) for the pairs that face each other, i in `rows` of the row's cluster and
-  /// j in `columns` of the column's; of a cluster with itself for i < j. The area is -1 where it takes
-  /// PairSampler::exact() to find it.
+  /// Calls use(i, j, unoccluded exchange area) for facing pairs, with i in `rows` of the row's cluster and j in
+  /// `columns` of the column's; within one cluster for i < j. The area is -1 if it needs PairSampler::exact().
   template <typename Use>
   void for_facing(const ClusterPair& pair, LaneMask rows, LaneMask columns, Use use) const;
 

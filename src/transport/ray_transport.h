@@ -17,18 +17,18 @@
 namespace patchlight {
 
 /// The exchange between the patches of a mesh, by rows of rays. Geometry alone decides the form factors. The light at
-/// the time of tracing decides which lamps are found apart from the rows and toward which bright patches rays are sent:
-/// other light scatters more.
+/// the time of tracing decides which lamps are separate and which bright patches rays sample directly. Other light has
+/// more noise.
 struct RayExchange {
   TracedRows rows;
-  std::vector<PatchRange> lamps;  ///< found apart: the patches of a side each, which emit alike
+  std::vector<PatchRange> lamps;  ///< separate lamps: the patches of one side each, with equal emission
   LampFactors lamp_factors;       ///< per patch and lamp
-  std::vector<std::array<double, 2>> specular_kinds = {};  ///< SpecularFaces::kinds() of the polygons by which rows
-                                                           ///< were traced; empty where none is specular
+  /// SpecularFaces::kinds() of the polygons at the time of tracing; empty if none is specular.
+  std::vector<std::array<double, 2>> specular_kinds = {};
 };
 
-/// Transport by sparse rows of rays, Storage::rays: H = F B, where F is the mean of two halves. Its rows sum up to what
-/// patches see, but A_i F_ij and A_j F_ji differ by the errors of both. One application reads every entry once.
+/// Transport by sparse rows of rays, Storage::rays: H = F B, where F is the mean of two halves. Rows sum to the visible
+/// share of patches, but A_i F_ij and A_j F_ji differ by their sampling errors. One application reads every entry once.
 class RayTransport : public TransportOperator {
  public:
   explicit RayTransport(std::array<RayRows, 2> halves) : halves_(std::move(halves)) {}
@@ -37,10 +37,10 @@ class RayTransport : public TransportOperator {
   Field apply(const FieldView& radiosity) const override;
   bool is_reciprocal() const override { return false; }
 
-  /// The same by one half of the rays alone, 0 or 1.
+  /// The same by one half of the rays only, 0 or 1.
   Field apply_half(std::size_t half, const FieldView& radiosity) const;
 
-  /// F 1, the same bits as apply() has, without looking at what is met.
+  /// F 1 with the same bits as apply(), but without reading which patches are hit.
   Eigen::VectorXd row_sums() const;
 
   const RayRows& rows(std::size_t half) const { return halves_[half]; }
@@ -49,7 +49,7 @@ class RayTransport : public TransportOperator {
   std::array<RayRows, 2> halves_;
 };
 
-/// A specular material on a way, and whether light was mirrored there or went through.
+/// A specular material on a path, and whether light was mirrored or transmitted there.
 struct SpecularMeeting {
   MaterialIndex material = 0;
   bool is_mirrored = false;
@@ -59,13 +59,13 @@ struct SpecularMeeting {
   }
 };
 
-/// Ways over the same specular materials, each as often, in any order; the meetings are sorted.
+/// A class of paths with the same specular materials, each the same number of times, in any order; sorted.
 using WayClass = std::vector<SpecularMeeting>;
 
-/// The name of a class: "glass + mirror mirrored"; "straight" without any.
+/// The name of a class: "glass + mirror mirrored"; "straight" for a class without materials.
 std::string name_of(const WayClass& way_class, const Scene& scene);
 
-/// A part of F_ij, by ways of one class.
+/// The part of F_ij by paths of one class.
 struct ClassEntry {
   PatchIndex from = 0;
   PatchIndex to = 0;
@@ -73,15 +73,15 @@ struct ClassEntry {
   float form_factor = 0;
 };
 
-/// The form factors by specular ways, class by class, in one colour: F = F_0 + sum_c F_c, where F_0 is what rows have
-/// of plain rays. Each is known from both halves of the rays, row by row, and not scaled to any sum. Ways that are
-/// straight are those to and from clear patches and mirrors.
+/// The form factors by specular paths, class by class, in one color: F = F_0 + sum_c F_c, where F_0 is the part of
+/// plain rays. Each is computed from both halves of the rays, row by row, and not scaled. Straight paths are those to
+/// and from clear patches and mirrors.
 struct RowsByClass {
   std::vector<WayClass> classes;
   std::array<std::vector<ClassEntry>, 2> halves;
 };
 
-/// Of rows with stops, in the colour of `faces`. No ray is traced.
+/// Splits rows with stops into classes, in the color of `faces`. No ray is traced.
 RowsByClass rows_by_class(const TracedRows& rows, const Scene& scene, const SpecularFaces& faces);
 
 }  // namespace patchlight

@@ -38,7 +38,7 @@ std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean) {
     for (const double s : size) all += rounded(factor * s);
     return all;
   };
-  // The largest factor with which there are no more rays than wanted, by bisection of its logarithm; sizes are
+  // The largest factor that does not exceed the requested number of rays, by bisection of its logarithm; sizes are
   // positive.
   const double wanted = 0.5 * mean * static_cast<double>(areas.size());
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
@@ -77,12 +77,10 @@ BrightPatches::BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expec
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   const double least = threshold * expected.dot(area) / area.sum();
   const double all = variance_up_to(expected, area, std::numeric_limits<double>::infinity());
-  // Rays of 32 neighbors, 64 each, have to meet bright patches some 16 times, so that halves tell how much these
-  // scatter.
+  // Rays of 32 neighbors, 64 each, must hit bright patches about 16 times, so that the halves show their scatter.
   const bool meets_by_chance = share_above(expected, area, least) >= 1.0 / 128;
-  // Rays toward bright patches, half as many as over the hemisphere, cost three quarters of these: 37 against 48 CPU s
-  // in the room with spheres of scripts/make_large_rooms.py. So many more rays over the hemisphere divide the variance
-  // by 1.75.
+  // Rays toward bright patches, half as many as hemisphere rays, cost three quarters of these. The same time spent on
+  // hemisphere rays would divide the variance by 1.75.
   if (meets_by_chance && all < 1.75 * variance_up_to(expected, area, least)) return;
   double flux = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -197,8 +195,8 @@ std::vector<Ray> RowTracer::hemisphere_rays(PatchIndex patch) const {
   return rays;
 }
 
-// The contribution of a ray over the hemisphere that meets a bright patch, by the balance heuristic: G / (n G + m p).
-// No shadow ray comes by way of a mirror: there it is 1 / n.
+// The contribution of a hemisphere ray that hits a bright patch, by the balance heuristic: G / (n G + m p). Shadow rays
+// do not follow mirrors: there it is 1 / n.
 float RowTracer::entry_of(PatchIndex patch, const Ray& ray, const Hit& hit, PatchIndex met) const {
   if (hit.reflections > 0) return 1 / static_cast<float>(counts_[patch]);
   const double cosines = mesh_.normal[patch].dot(ray.direction) * std::abs(mesh_.normal[met].dot(ray.direction));

@@ -17,34 +17,33 @@
 
 namespace patchlight {
 
-/// A patch takes no more rays in each of two halves.
+/// The largest number of rays of a patch in each of two halves.
 inline constexpr std::uint32_t most_rays = 4096;
 
-/// How many rays each patch takes in each of two halves, so that the mean over the patches of both together is about
-/// `mean`: in proportion to its area to the power 0.4, rounded to powers of two. Where patches have one size, all have
-/// one number, which is then up to 1.42 times more or less than asked for. `areas` are those of the patches, or others
-/// in proportion to which patches matter.
+/// The number of rays per patch in each of two halves, so that the mean over the patches of both together is about
+/// `mean`. It is proportional to the area to the power 0.4, rounded to a power of two. Patches of one size all get the
+/// same number, up to 1.42 times above or below the requested one. `areas` are those of the patches, or other weights.
 std::vector<std::uint32_t> ray_counts(std::span<const double> areas, int mean);
 
-/// Patches from which much of the light is expected, towards which rays are sent on purpose: each with a probability in
-/// proportion to its share of their flux. The expected light decides about the error alone, never about the mean.
+/// Patches that are expected to send much of the light, and that rays therefore sample directly. Each is chosen with a
+/// probability proportional to its share of their flux. The expected light affects the noise only, never the mean.
 class BrightPatches {
  public:
-  /// Those of which the expected radiosity, one value per patch, is above `threshold` times its mean over the area;
-  /// none where rays often meet them by chance, and scatter so little that more of these cost less.
+  /// Selects patches whose expected radiosity (one value per patch) is above `threshold` times its area-weighted mean.
+  /// Selects none if hemisphere rays often hit them by chance with so little scatter that more such rays cost less.
   BrightPatches(const PatchMesh& mesh, const Eigen::VectorXd& expected, double threshold, const Occluder& occluder);
 
   bool empty() const { return patches_.empty(); }
   std::size_t size() const { return patches_.size(); }
-  /// Probability per area of a point of the patch to be chosen, 1/m^2; 0: not a bright one.
+  /// Probability density of choosing a point of the patch, 1/m^2; 0: not a bright patch.
   float density(PatchIndex patch) const { return density_[patch]; }
   const std::vector<float>& densities() const { return density_; }
-  /// Starts to read the densities of patches that are asked for next.
+  /// Prefetches the densities of patches that will be read next.
   void prefetch_densities(std::span<const PatchIndex> patches) const {
     for (const PatchIndex patch : patches) __builtin_prefetch(&density_[patch]);
   }
 
-  /// A patch chosen by u in [0, 1), which is stretched over the patch's share of [0, 1) to be used again.
+  /// A patch chosen by u in [0, 1). The rest of u is stretched over [0, 1) for reuse.
   struct Chosen {
     PatchIndex patch = 0;
     const SampledPatch* sampled = nullptr;
@@ -54,43 +53,43 @@ class BrightPatches {
 
  private:
   std::vector<PatchIndex> patches_;
-  std::vector<double> upto_;          // per bright patch: the probability of it and all before
-  std::vector<std::uint32_t> guide_;  // per equal part of [0, 1): the first that may be chosen there
+  std::vector<double> upto_;          // per bright patch: cumulative probability
+  std::vector<std::uint32_t> guide_;  // per equal part of [0, 1): the first possible choice
   std::vector<SampledPatch> sampled_;
   std::vector<float> density_;  // per patch of the mesh
 };
 
 /// The result of the rays of one patch.
 struct PatchRays {
-  std::array<std::vector<PatchIndex>, 2> hits;  ///< per half: the patches met that are not bright
+  std::array<std::vector<PatchIndex>, 2> hits;  ///< per half: the patches hit that are not bright
   double inverse_lengths = 0;                   ///< summed over its rays, 1/m
   int escaped = 0;
-  int unseen = 0;  ///< as unseen() counts; both without rays that are specular on their way
+  int unseen = 0;  ///< counted as in unseen(); both without rays on specular paths
 };
 
-/// The entries of some patches in both halves, before they are scaled, one patch after the other.
+/// The entries of some patches in both halves, unscaled, in the order of the patches.
 struct RowEntries {
   std::array<std::vector<RayEntry>, 2> halves;
   std::array<std::vector<SpecularStop>, 2> stops = {};
   std::uint32_t shadow_rays = 0;
 };
 
-/// Traces the rays of one patch after the other, as trace_rows() has them. Safe to use from several threads.
+/// Traces the rays of single patches for trace_rows(). Thread-safe.
 class RowTracer {
  public:
   /// Keeps references to the first three.
   RowTracer(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright, const RayOptions& options);
 
-  /// Whether rays can be specular on their way.
+  /// Whether rays can have specular paths.
   bool is_specular() const { return !occluder_.specular_faces().empty(); }
 
-  /// How many polygons the scene has.
+  /// The number of polygons in the scene.
   PolygonIndex polygons() const { return static_cast<PolygonIndex>(mesh_.first_patch.size() / 2); }
 
   /// Rays of each patch in one half.
   const std::vector<std::uint32_t>& counts() const { return counts_; }
 
-  /// The rays of a patch; its entries are added at the end.
+  /// Traces the rays of a patch; appends its entries.
   PatchRays trace(PatchIndex patch, RowEntries& entries) const;
 
  private:

@@ -18,7 +18,7 @@ AuditedPairs total(const std::array<AuditedPairs, n>& kinds) {
   return sum;
 }
 
-// So many pairs tell a variance to a quarter.
+// This many pairs estimate a variance to about 25 %.
 bool are_enough(const AuditedPairs& audited) { return audited.pairs >= 30; }
 
 double root_mean(const AuditedPairs& audited) {

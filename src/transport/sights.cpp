@@ -100,7 +100,7 @@ Ray Sights::moved(PatchIndex patch, Ray ray) const {
 }
 
 bool Sights::lies_behind(PatchIndex patch, double height, const Hit& hit) const {
-  // Of two faces in one plane that look the same way, as of a rug on a floor, the lower one is met from behind.
+  // If two faces in one plane look the same way, e.g. a rug on a floor, the ray hits the lower one from behind.
   const Side other = hit.side == Side::front ? Side::back : Side::front;
   if (occluder_.lies_over(mesh_.polygon[patch], hit.polygon, other)) return true;
   if (!has_patches(hit) && occluder_.is_covered(hit.polygon, other, hit.point)) return true;

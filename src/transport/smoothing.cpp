@@ -107,17 +107,17 @@ namespace {
 // Neighbors lie within this share of the mean distance of the surroundings.
 constexpr double reach = 0.2;
 
-// About so many at most.
+// The approximate maximum number.
 constexpr double most_neighbours = 32;
 
 // Their normals' cosine is above this one, that of 25 degrees.
 constexpr double least_cosine = 0.9;
 
-// The slopes of the regression are held back by this share of the weights, so that it is a mean where neighbours lie on
-// one side.
+// Ridge regularization of the slopes, as a share of the weights: the result becomes a mean if all neighbors lie on one
+// side.
 constexpr double ridge = 0.05;
 
-// Candidates whose distances are found together.
+// The number of candidates whose distances are computed together.
 constexpr std::size_t measured_at_once = 64;
 
 struct Neighbour {
@@ -126,7 +126,7 @@ struct Neighbour {
   double u = 0, v = 0;  // place in the plane, in radii
 };
 
-// How far patches look for neighbours where nothing is near them.
+// The search radius for neighbors of patches with nothing near them.
 double widest_radius(double area) { return std::sqrt(most_neighbours / std::numbers::pi * area); }
 
 struct Smoother {
@@ -243,8 +243,8 @@ struct Smoothing {
   SmoothedHalves& into;
 };
 
-// Of neighbours with their coefficients: the means of `width` bands from `place` on in both halves, and as the variance
-// the weighted sum of the squares of the distance of either half from their mean.
+// For neighbors with their coefficients, computes the means of `width` bands from `place` on in both halves. The
+// variance is the weighted sum of the squared distances of either half from their mean.
 template <std::size_t width>
 void sum_up(const Smoothing& fields, Eigen::Index place, Eigen::Index band, const std::vector<Neighbour>& neighbours,
             const std::vector<double>& c) {
@@ -278,8 +278,8 @@ double squared_difference(const std::array<Field, 2>& halves, Eigen::Index place
   return half * half;
 }
 
-// Does a patch, its bands at [first, last), see other light than its neighbours, as both halves tell? A face that lies
-// a little behind another may look into a space of its own. The variance is that of `fields` times a factor.
+// Whether a patch, its bands at [first, last), sees other light than its neighbors, according to both halves. A face
+// slightly behind another may look into a separate space. The variance is that of `fields` times a factor.
 bool is_apart(const Smoothing& fields, Eigen::Index first, Eigen::Index last, double factor) {
   for (Eigen::Index place = first; place < last; ++place) {
     const auto off = [&](std::size_t half) {
@@ -287,7 +287,7 @@ bool is_apart(const Smoothing& fields, Eigen::Index first, Eigen::Index last, do
     };
     const double variance =
         std::max(factor * fields.into.variance.data()[place], squared_difference(fields.halves, place));
-    // The errors of both halves alone, 2 v in each of them, exceed this once in some 500 times.
+    // Sampling errors alone, 2 v in each half, exceed this about once in 500 times.
     if (off(0) * off(1) > 9 * variance) return true;
   }
   return false;

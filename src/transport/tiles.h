@@ -20,13 +20,12 @@ namespace patchlight {
 /// Rows and columns of a tile.
 inline constexpr PatchIndex tile_edge = 64;
 
-/// Partial sums of products are kept per stripe of rows. Their number is fixed: so the bits do not depend on the
-/// threads.
+/// Partial sums of products are kept per stripe of rows. The number of stripes is fixed, so the bits do not depend on
+/// the number of threads.
 inline constexpr PatchIndex stripes = 8;
 
-/// The sum over all rows below `rows` of the values that add(row, sum) adds to a copy of `zero`. Stripe s takes the
-/// rows s, s + count,
-/// ...: long and short rows spread evenly.
+/// The sum over all rows below `rows` of the values that add(row, sum) adds to a copy of `zero`. Stripe s has the rows
+/// s, s + count, ...: long and short rows spread evenly.
 template <typename Sum, typename Add>
 Sum sum_over_stripes(PatchIndex rows, PatchIndex count, const Sum& zero, Add add) {
   std::vector<Sum> partial(count, zero);
@@ -37,9 +36,9 @@ Sum sum_over_stripes(PatchIndex rows, PatchIndex count, const Sum& zero, Add add
   return std::move(partial[0]);
 }
 
-/// How ExchangeAreas are stored: square tiles of tile_edge x tile_edge entries for block rows I <= J, row by row; a
-/// diagonal tile holds both of its halves, and rows and columns beyond size() are zero. For products with tiles;
-/// all other code goes through entry_parts(), for_entries() and changed().
+/// The layout of ExchangeAreas: square tiles of tile_edge x tile_edge entries for block rows I <= J, row by row. A
+/// diagonal tile holds both of its halves; rows and columns beyond size() are zero. Only products use tiles; other code
+/// uses entry_parts(), for_entries() and changed().
 struct Tiles {
   /// Number of block rows.
   static PatchIndex blocks(const ExchangeAreas& S);
@@ -56,7 +55,7 @@ inline float narrow_toward_zero(double value) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - 1);
 }
 
-/// In how many parts for_entries() goes through the entries: every pair of patches is in one of them.
+/// The number of parts in for_entries(). Every pair of patches is in exactly one.
 inline PatchIndex entry_parts(const ExchangeAreas& S) { return Tiles::blocks(S); }
 
 /// Calls use(i, j, S_ij) for the entries i < j of a part that are not 0, always in the same order.
@@ -73,8 +72,8 @@ void for_entries(const ExchangeAreas& S, PatchIndex part, Use use) {
   }
 }
 
-/// Every entry S_ij that is not 0 replaced by value(i, j, S_ij) = value(j, i, S_ij), narrowed toward zero. `value` is
-/// called by several threads at once.
+/// Replaces every nonzero entry S_ij by value(i, j, S_ij) = value(j, i, S_ij), rounded toward zero. Several threads
+/// call `value` at once.
 using Change = std::function<double(PatchIndex i, PatchIndex j, double entry)>;
 ExchangeAreas changed(ExchangeAreas S, const Change& value);
 
@@ -97,14 +96,14 @@ struct PackedField {
   std::size_t offset(PatchIndex I) const { return static_cast<std::size_t>(I) * tile_edge * bands; }
 };
 
-/// Sums over the tiles of a block row, kept apart in eight lanes for each patch and band until the row is done.
+/// Sums over the tiles of a block row, in eight separate lanes for each patch and band until the row is complete.
 struct RowSums {
   LargeArray<double> lanes;
 
   explicit RowSums(int bands);
 };
 
-/// Adds the lanes up: out_I += the sums.
+/// Adds the lanes: out_I += the sums.
 void add_sums(const RowSums& sums, int bands, double* out_I);
 
 /// Products of a tile T with the packed values of one block, all bands in one pass over the tile, summed in double.
@@ -121,7 +120,7 @@ struct TileProduct {
 };
 void multiply_tile(const float* tile, int bands, const TileProduct& product);
 
-/// The sum of `count` fields that lie one behind the other, in this order.
+/// The sum of `count` consecutive fields, in this order.
 PackedField summed(PackedField parts, PatchIndex count);
 
 }  // namespace patchlight

@@ -24,20 +24,20 @@ struct FlatPolygon {
 
 FlatPolygon flat_polygon(std::span<const Point> corners);
 
-/// True when a point of the polygon's plane lies in the polygon.
+/// True when a point of the polygon's plane lies inside the polygon.
 bool contains(const FlatPolygon& polygon, const Point& point);
 
-/// True when the polygon cuts every segment from the convex hull of some points to that of others, both of them farther
-/// than `tolerance` from its plane. May be false when it does by little: a rectangle of the polygon has to hold all
+/// True when the polygon cuts every segment from the convex hull of one group of points to that of another, both
+/// farther than `tolerance` from its plane. May be false in narrow cases: a rectangle inside the polygon must hold all
 /// crossings, and the seam of a hole counts as an edge.
 bool cuts_all(const FlatPolygon& polygon, std::span<const Point> from, std::span<const Point> to, double tolerance);
 
-/// Per polygon 1 when all vertices of the scene lie on one side of its plane, up to 1e-6 of the scene's extent: such a
-/// polygon is part of the convex hull and cannot stand between two points of the scene.
-/// O(polygons) for most scenes, O(polygons x vertices) for convex ones.
+/// Per polygon: 1 when all vertices of the scene lie on one side of its plane, up to 1e-6 of the scene's extent. Such a
+/// polygon is part of the convex hull and cannot stand between two points of the scene. O(polygons) for most scenes,
+/// O(polygons x vertices) for convex ones.
 std::vector<std::uint8_t> on_convex_hull(const Scene& scene);
 
-/// Tells the places of polygons over which another polygon lies, in recentred coordinates.
+/// The places of polygons that another polygon covers, in recentered coordinates.
 struct CoveredPlaces {
   Coverings coverings;
   std::vector<FlatPolygon> polygons;  ///< of the scene
@@ -46,7 +46,7 @@ struct CoveredPlaces {
 
   bool covers(PolygonIndex polygon, Side side, const Point& place) const;
 
-  /// True if one of two polygons lies over the other in one plane, but for rounding. O(log n) for n polygons over one.
+  /// True if one of two polygons lies over the other in one plane, up to rounding. O(log n) for n polygons over one.
   bool lie_in_one_plane(PolygonIndex a, PolygonIndex b) const;
 
   /// True when one end of a segment lies on a covered place of the polygon there, on the side that the segment sees.

@@ -18,8 +18,8 @@ double tolerance_for(const TrianglePlane& plane, const Segment& ray, const Cover
   return is_together ? in_plane_tolerance : tolerance_of_shapes;
 }
 
-// A polygon stands in the way only if it is neither of those the ray starts and ends on and its plane separates the
-// ray's two ends. So hits next to an end, where single precision cannot tell before from behind, are decided in double.
+// A polygon blocks a ray only if the ray neither starts nor ends on it and its plane separates the two ends of the ray.
+// So hits near an end, where single precision is too coarse, are decided in double precision.
 bool separates(const TrianglePlane& plane, const Segment& ray, double tolerance) {
   if (plane.polygon == ray.from_polygon || plane.polygon == ray.to_polygon) return false;
   const double from = plane.height(ray.from);
@@ -27,8 +27,8 @@ bool separates(const TrianglePlane& plane, const Segment& ray, double tolerance)
   return (from > tolerance && to < -tolerance) || (from < -tolerance && to > tolerance);
 }
 
-// Marks the hits that are beyond doubt: the ray's ends are so far on either side of the triangle's plane, by
-// t |n . d| and (1 - t) |n . d|, that single precision tells them apart. A ray without an end has none on the far side.
+// Marks the hits that single precision decides: the distances of the ray's ends from the triangle's plane, t |n . d|
+// and (1 - t) |n . d|, are large enough. An endless ray has no end on the far side.
 template <unsigned N>
 PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, bool is_endless, unsigned char* clear) {
   for (unsigned k = 0; k < N; ++k) {
@@ -39,7 +39,7 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
     const float nearer = is_endless ? t : std::min(t, 1 - t);
     const float height = nearer * (x * RTCRayN_dir_x(hits.ray, N, k) + y * RTCRayN_dir_y(hits.ray, N, k) +
                                    z * RTCRayN_dir_z(hits.ray, N, k));
-    // Far from the scene's middle single precision tells less.
+    // Single precision is coarser far from the scene's center.
     const float far = std::max({1.0F, std::abs(RTCRayN_org_x(hits.ray, N, k)), std::abs(RTCRayN_org_y(hits.ray, N, k)),
                                 std::abs(RTCRayN_org_z(hits.ray, N, k))});
     const float least = 1e-4F * 1e-4F * far * far * (x * x + y * y + z * z);
@@ -47,7 +47,7 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
   }
 }
 
-// Where the ray meets the plane, does another polygon lie over it?
+// Whether another polygon lies over the point where the ray hits the plane.
 bool is_covered(const TrianglePlane& plane, const Segment& ray, const CoveredPlaces& places) {
   const double from = plane.height(ray.from);
   const double to = plane.height(ray.to);

@@ -27,7 +27,7 @@ struct TrianglePlane {
 struct TriangleScene {
   RTCScene scene = nullptr;
   LargeArray<TrianglePlane> planes;   ///< per triangle
-  LargeArray<PolygonIndex> polygons;  ///< per triangle, side by side: filters ask mostly for these
+  LargeArray<PolygonIndex> polygons;  ///< per triangle, contiguous: filters read mostly these
 
   TriangleScene() = default;
   TriangleScene(const TriangleScene&) = delete;
@@ -57,19 +57,19 @@ struct Crossed {
 /// The filter's data beside Embree's own context.
 struct Context {
   RTCIntersectContext embree;                     ///< first, so that a pointer to it is a pointer to the whole
-  const Segment* rays = nullptr;                  ///< recentered; they decide whether a hit in single precision is one
+  const Segment* rays = nullptr;                  ///< recentered; they decide whether a hit in single precision counts
   const ShadowPacket* packet = nullptr;           ///< in place of rays
   const CoveredPlaces* covered_places = nullptr;  ///< hits on these do not count, if given
   Crossed* crossed = nullptr;                     ///< per ray: the result of list_crossed()
-  bool is_endless = false;                        ///< whether the ray, a single one, has no end
+  bool is_endless = false;                        ///< whether the ray, a single one, is endless
 };
 
-/// Embree's filter: drops the hits on polygons whose plane does not separate the two ends of the ray, and on those that
-/// it starts or ends on.
+/// Embree's filter: rejects hits on polygons whose plane does not separate the two ends of the ray, and on polygons
+/// that the ray starts or ends on.
 void keep_separating_hits(const RTCFilterFunctionNArguments* arguments);
 
-/// Embree's filter for clear polygons: lists each of those whose plane separates the two ends of the ray once, and
-/// drops the hit, so that the ray goes on.
+/// Embree's filter for clear polygons: lists each polygon whose plane separates the two ends of the ray once, and
+/// rejects the hit, so that the ray continues.
 void list_crossed(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace patchlight

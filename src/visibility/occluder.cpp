@@ -27,7 +27,7 @@
 namespace patchlight {
 namespace {
 
-// All polygons of a scene, which rays meet, in a scene of about unit size.
+// All polygons of a scene, for tracing, in a scene of about unit size.
 struct TracedFaces {
   RTCDevice device = rtcNewDevice(nullptr);
   Point centre;
@@ -106,8 +106,6 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
   rtcCommitScene(target.scene);
 }
 
-// Which polygons take part in tracing; marks are 1 per polygon that does not.
-
 // Whether clear polygons let light through.
 bool lets_through(Occluder::Blockers which) {
   return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
@@ -127,7 +125,7 @@ std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& sce
   return lets_through(which) ? left_out : without_kind(left_out, scene, which == Occluder::Blockers::opaque);
 }
 
-// The polygons that rays do not meet: those of the other kind, where only one kind is asked for.
+// The polygons that rays ignore: those of the other kind, if only one kind is requested.
 std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
   return left_out_by(lets_through(which) ? Occluder::Blockers::all : which, scene);
 }
@@ -164,7 +162,7 @@ bool is_finite(const RTCRay16& rays, unsigned k) {
   return finite;
 }
 
-// A ray whose end is covered need not be traced, which would meet all polygons in that plane.
+// A ray with a covered end need not be traced; it would hit all polygons in that plane.
 bool covers_end(const CoveredPlaces& places, const Segment& ray) {
   return places.any() && places.covers_end(ray.from, ray.to, ray.from_polygon, ray.to_polygon);
 }
@@ -271,7 +269,7 @@ std::uint16_t Occluder::occluded(const ShadowPacket& packet) const {
   return static_cast<std::uint16_t>(blocked);
 }
 
-// Of the rays whose bit is not set in `blocked`.
+// The polygons crossed by the rays whose bit in `blocked` is not set.
 std::array<Crossed, ShadowPacket::size> Occluder::Tracer::crossed_by(const ShadowPacket& packet,
                                                                      unsigned blocked) const {
   alignas(64) RTCRay16 rays = rays_of(packet);
@@ -466,8 +464,7 @@ std::optional<Ray> onward(const Occluder& occluder, const Hit& hit, double drawn
 
 }  // namespace
 
-// Each time that a ray meets a specular polygon it goes on from there with the probability of its transmittance, or of
-// its reflectance.
+// At each specular polygon a ray continues with the probability of its transmittance or reflectance.
 std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                           std::span<const std::size_t> keys) const {
   assert(keys.empty() || keys.size() == rays.size());
@@ -506,7 +503,7 @@ bool has_mirrors(const Scene& scene) {
 
 }  // namespace
 
-// The occluders that are built when they are first asked for.
+// The occluders that are built on first use.
 struct Tracing::Later {
   std::once_flag all_once, opaque_once, clear_once;
   std::shared_ptr<const Occluder> all, opaque, clear;

@@ -134,7 +134,7 @@ bool ShaftCuller::is_empty(const Slabs& first, const Slabs& second, const std::o
                            const std::optional<HalfSpace>& behind_second) const {
   const Slabs shaft = both(first, second);
   const auto plane_of = [&](const std::optional<HalfSpace>& half) {
-    // A half space that holds nothing stands for none.
+    // An empty half space stands for none.
     if (!half) return Plane{0, 0, 0, -1};
     const Vector n = half->normal;
     const double offset = scale_ * (half->offset - n.dot(centre_));

@@ -156,11 +156,11 @@ class BuildingTest(ToolTest):
         text = (self.folder / "hall.toml").read_text()
         self.write("fine.toml", text.replace("# spacing = 0.5 ", "spacing = 0.005 "))
         said = self.good("check", "fine.toml")
-        self.assertRegex(said, r"\d{6} sensors are asked for.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
-        self.assertNotIn("sensors are asked for", self.good("check", "hall.toml"))
+        self.assertRegex(said, r"\d{6} sensors are requested.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
+        self.assertNotIn("sensors are requested", self.good("check", "hall.toml"))
         # Long before its end: without mesh and patches it is refused afterwards.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
-        self.assertRegex(done.stderr, r"note: implausible_size: \d{6} sensors are asked for")
+        self.assertRegex(done.stderr, r"note: implausible_size: \d{6} sensors are requested")
 
     def test_check_fits_on_a_screen(self):
         names = [f"m{k}" for k in range(80)]

@@ -64,7 +64,7 @@ class PlanTest(ToolTest):
 
     def test_a_second_mesh_that_does_not_fit_is_noted(self):
         options = ("plan", "room.obj", "--method", "rays", "--patches", "30000", "--json", "plan.json")
-        said = "a second mesh, which is made where the first errs by more than 2 %, does not fit into the memory"
+        said = "a second mesh, which is made where the first has an error of more than 2 %, does not fit into the memory"
         done = self.run_tool(*options)
         self.assertIn("a second mesh where the first errs by more than 2 %, ", done.stdout)
         self.assertNotIn(said, done.stderr)

@@ -94,7 +94,7 @@ class RelightTest(ToolTest):
         done = self.good("relight", "room.ff", "--json", "lit.json", "--set", "shed.exitance=1")
         # The shed's faces look inward, where no lamp was.
         self.assertIn("material 'shed' emits, but no light comes from it", done.stderr)
-        self.assertIn("would take part that did not", done.stderr)
+        self.assertIn("would be included that were left out", done.stderr)
         # The patches stay those of then.
         done = self.good("relight", "room.ff", "--json", "dark.json")
         self.assertNotIn("left out of the form factors", done.stderr)

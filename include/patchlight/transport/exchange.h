@@ -23,30 +23,30 @@ struct Exchange {
   LostShare lost;
   AssemblyCounts counts;
   SamplingError error;       ///< of the sampled entries, before closure
-  EntryErrors entry_errors;  ///< of the exchange areas before closure, when asked for or when closure weighs by them
-  std::string closure;       ///< the method that has closed the exchange areas; empty before closure
+  EntryErrors entry_errors;  ///< of the exchange areas before closure, if requested or if closure weighs by them
+  std::string closure;       ///< the method that closed the exchange areas; empty before closure
 };
 
-/// What is known of the exchange without exchange areas, which are computed on demand: those in the result are of no
-/// patch, and row sums are empty. Areas have nothing but the lost shares to go by. \throws Cancelled.
+/// The exchange for rows on demand: exchange areas have no patches, and row sums are empty. Areas follow from the lost
+/// shares alone. \throws Cancelled.
 Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                             const Observer& observer = {});
 
-/// Exchange areas before closure, and the share of each patch's hemisphere from which no patch is seen.
+/// Computes the exchange areas before closure, and the share of each patch's hemisphere in which no patch is visible.
 /// \throws Cancelled.
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         const Observer& observer = {});
 
-/// The same from exchange areas that are known.
+/// The same from known exchange areas.
 Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost);
 
-/// True when closure weighs the entries by their errors: in an open scene of not too many patches.
+/// True when closure weighs the entries by their errors: in an open scene with a limited number of patches.
 bool weighs_by_errors(const LostShare& lost, PatchIndex patches);
 
-/// Changes the exchange areas least so that each row sums up to what its patch sees: all of its hemisphere less the
-/// lost share. Those that are closed already (Exchange::closure) stay; in a closed scene what the storage of closed
-/// rows as floats has changed of their sums, below 3e-7 of the area, becomes their remainder, of either sign, and rows
-/// that are farther off are closed again. \throws Cancelled.
+/// Closes the exchange areas: the smallest change that makes each row sum to the visible share of its patch. Areas that
+/// are already closed (Exchange::closure) stay. In a closed scene, storing closed rows as floats changes their sums by
+/// less than 3e-7 of the area. That change becomes their remainder, of either sign; rows with larger defects are closed
+/// again. \throws Cancelled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -30,8 +30,8 @@ class ExchangeAreas {
   LargeArray<float> entries_;
 };
 
-/// Sums S B over j for every row, all bands, in double: (S B)_i = sum_j S_ij B_j, with the entries raised to `power` (1
-/// or 2) first. The same bits for any number of threads.
+/// The product S B in double, all bands: (S B)_i = sum_j S_ij B_j, with the entries raised to `power` (1 or 2) first.
+/// The same bits for any number of threads.
 Field multiply(const ExchangeAreas& S, const FieldView& B, int power = 1);
 
 /// Row sums sum_j S_ij in m^2.

@@ -196,7 +196,7 @@ TEST(TexturedPatches, SayHowManyMaterialsHavePicturesAndHowFarTexelsDiffer) {
   ASSERT_NE(found, decisions.end());
   EXPECT_TRUE(found->simulate);
   EXPECT_EQ(found->reason,
-            "1 of 2 materials has a picture; texels differ from the mean of their picture by up to 100 %, rms");
+            "1 of 2 materials has a texture; texels differ from the mean of their texture by up to 100 %, rms");
 }
 
 // Two triangles of one picture become a wall where it goes on from one to the other, and stay apart where it does not.

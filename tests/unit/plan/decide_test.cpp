@@ -132,7 +132,7 @@ TEST(Decide, TellsColoursOfPanesApartByRays) {
   facts.coloured_specular = 1;
   const Decision decided = decision(facts, Effect::bands_of_panes);
   EXPECT_TRUE(decided.simulate);
-  EXPECT_EQ(decided.reason, "colours of 1 clear or mirroring material change light between patches");
+  EXPECT_EQ(decided.reason, "colors of 1 clear or mirroring material change light between patches");
 }
 
 TEST(Decide, ObeysTheRequestAndMarksIt) {
