@@ -27,8 +27,8 @@ class PixelSamples {
   std::uint32_t count() const { return count_; }  ///< of those added
   double mean() const;
 
-  /// Of one sample, if there were nothing to gain from several: the variance of the mean times their number. All that
-  /// extend() made room for must be there.
+  /// The variance of one sample: the variance of the mean times the number of samples, without the gain from
+  /// stratification. All samples that extend() reserved must be present.
   double variance() const;
 
  private:
@@ -68,14 +68,15 @@ struct GatheredImage {
   std::optional<double> error = {};  ///< mean_relative_error() of a finished or unfinished gather; a draft has none
 };
 
-/// A picture of the light that points get, by two passes (Wallace, Cohen and Greenberg 1987): each point that the eye
-/// meets, straight, in mirrors and through clear faces, takes light of lamps, luminaires, sun and sky by shadow rays,
-/// and all other light from the solution, gathered at records between which it is interpolated (IrradianceCache). The
-/// light that mirrors and clear faces scatter themselves is `radiance`, that of the smoothed solution.
+/// A picture of the light that points receive, in two passes (Wallace, Cohen and Greenberg 1987). For each visible
+/// point, directly, in mirrors and through clear faces, shadow rays compute the light of lamps, luminaires, sun and
+/// sky. All other light comes from the solution: it is gathered at records and interpolated between them
+/// (IrradianceCache). `radiance`, from the smoothed solution, gives the light that mirrors and clear faces scatter
+/// themselves.
 ///
-/// Pixels take stratified samples under a tent filter: first 4 each, then as many as the wanted error asks for. Sets
-/// Image::error from how far pairs of samples differ, in a pixel and those around, and from how records differ. Same
-/// bits for any number of threads. \throws Cancelled as long as there is no picture.
+/// Pixels take stratified samples under a tent filter: first 4 each, then as many as the requested error needs.
+/// Image::error comes from the differences between pairs of samples, in a pixel and its neighbors, and between records.
+/// The result does not depend on the number of threads. \throws Cancelled before there is a picture.
 GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
                            const FinalGatherOptions& options = {}, const Observer& observer = {});
 

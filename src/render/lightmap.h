@@ -34,10 +34,9 @@ struct PackedCharts {
   double texel = 0;  ///< meters
 };
 
-/// In the smallest square for texels of this size, or of the smallest size for which they fit into the largest map.
-/// Without a size with the smallest texels for which they fit into 256 x 256 texels, or, where there are so many charts
-/// that padding would take half of it, into the next larger square.
-/// \throws InputError when they fit into no map.
+/// Packs charts into the smallest square for texels of this size, or of the smallest size for which they fit into the
+/// largest map. Without a size, takes the smallest texels for which they fit into 256 x 256 texels. With so many charts
+/// that padding would take half of that, it takes the next larger square. \throws InputError if they fit into no map.
 PackedCharts packed_charts(const std::vector<LightmapChart>& charts, const std::optional<double>& texel);
 
 /// The map with light at so many texels around each chart, and around its holes. Beside a known texel the light goes on

@@ -38,7 +38,7 @@ struct PathOptions {
 
 /// One row per receiver, one column per band.
 struct PathEstimate {
-  Field irradiance;         ///< mean over what is exposed of the receiver, W/m^2; 0 if nothing is
+  Field irradiance;         ///< mean over the exposed part of the receiver, W/m^2; 0 if nothing is
   Field standard_error;     ///< its standard error, W/m^2, estimated with path_batches - 1 degrees of freedom
   std::uint32_t paths = 0;  ///< per receiver
   std::uint64_t rays = 0;   ///< per vertex of a path one to a lamp and one scattered, where there are luminaires one to

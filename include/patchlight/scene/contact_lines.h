@@ -31,12 +31,12 @@ struct ContactLines {
 /// How many there are on all polygons.
 std::size_t number_of(const ContactLines& contacts);
 
-/// The lines of contact on every polygon with a kept side, between those that are not bent by rounding. Faces touch
-/// where they are within weld_distance(). Edges close before a polygon count as far as a fiftieth of the root of the
-/// area of all faces and a tenth of that of the polygon, and only where the face before it ends, not where it goes on;
+/// The lines of contact on every polygon with a kept side, without those bent by rounding. Faces touch if they are
+/// within weld_distance(). Edges close before a polygon count up to a fiftieth of the root of the area of all faces,
+/// and a tenth of that of the polygon. They count only where the face before the polygon ends, not where it continues;
 /// such an edge is a line of its own face too. Lines may reach beyond a polygon that is not convex, may cross and may
-/// be there twice. None, and `everywhere` set, where some 500 polygons tell that there are over two million, as in a
-/// damaged model. O(n log n + k) for n polygons of which k pairs are near each other.
+/// be duplicate. Returns none, with `everywhere` set, if about 500 polygons show that there are over two million, e.g.
+/// in a damaged model. O(n log n + k) for n polygons of which k pairs are near each other.
 ContactLines find_contact_lines(const Scene& scene, const KeptSides& kept);
 
 }  // namespace patchlight

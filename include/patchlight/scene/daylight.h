@@ -19,8 +19,8 @@ struct Sun {
 /// How the radiance of a sky varies over its hemisphere.
 enum class SkyKind : std::uint8_t { uniform, cie_overcast, cie_clear, perez };
 
-/// The sky, without the sun, and the ground below the horizon. Spectra have the scene's number of bands. The radiance
-/// of the sky is told by one of two spectra.
+/// The sky, without the sun, and the ground below the horizon. Spectra have the scene's number of bands. One of two
+/// spectra defines the radiance of the sky.
 struct Sky {
   SkyKind kind = SkyKind::uniform;
   Spectrum horizontal_irradiance{};        ///< of an unobstructed horizontal plane by the sky alone, W/m^2; or empty:

@@ -132,7 +132,7 @@ struct Scene {
   double metres_per_unit = 1;                 ///< length of one unit of the model file
   bool unit_stated = false;                   ///< the model files state their unit, and no caller gave another
   Vector up = Vector::UnitZ();
-  bool up_stated = false;          ///< the model file or who reads it says which way is up
+  bool up_stated = false;          ///< the model file or the caller defines the vertical axis
   Vector north = Vector::UnitY();  ///< unit, at right angles to up
   bool north_stated = false;       ///< by the model file
   std::vector<Luminaire> luminaires;
@@ -145,7 +145,7 @@ struct Scene {
   std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
   std::vector<Camera> cameras;                    ///< where pictures are taken from
   std::vector<NamedRoom> rooms;                   ///< that the models name
-  std::optional<BandChoice> band_choice{};        ///< nothing where nothing has a spectrum and no bands are asked for
+  std::optional<BandChoice> band_choice{};        ///< empty without spectra and without requested bands
 };
 
 /// How many bands the scene's spectra have. There must be a material.
@@ -196,9 +196,9 @@ bool is_opening(const Scene& scene, PolygonIndex polygon);
 /// True when this side of the polygon is a mirror: its specular reflectance is above 0 in some band.
 bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side);
 
-/// True when the polygon is a translucent sheet: light that arrives on one side is scattered out of the other as well,
-/// as the material of its front has a diffuse transmittance above 0 in some band. check() has that of its back the
-/// same.
+/// True if the polygon is a translucent sheet: the material of its front has a diffuse transmittance above 0 in some
+/// band. Light that arrives on one side is also scattered out of the other. check() requires the same diffuse
+/// transmittance on the back.
 bool is_sheet(const Scene& scene, PolygonIndex polygon);
 
 /// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
@@ -219,10 +219,15 @@ Box bounds(const Scene& scene);
 /// \throws InputError naming the file and line.
 void check_vertices(const Scene& scene);
 
-/// Checks the conditions of every later step: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
-/// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not
-/// two of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.
+/// Checks the conditions of every later step:
+/// - those of check_vertices();
+/// - at least one polygon; planar polygons with area; a model of 1e-12 m or more,
+/// - one of Scene::bands for each band, if there are any;
+/// - reflectance in [0, 1],
+/// - at most one of transmittance, specular reflectance and diffuse transmittance; not negative, at most 1 with the
+///   reflectance;
+/// - the same diffuse transmittance on both sides of a polygon,
+/// - exitance finite and not negative.
 /// \throws InputError naming the file and line, or the material.
 void check(const Scene& scene);
 

@@ -15,7 +15,7 @@ struct Sensor {
   Vector normal;
 };
 
-/// Sensors that are asked for together.
+/// A named group of sensors.
 struct SensorGroup {
   std::string name;
   std::vector<Sensor> sensors;

@@ -75,15 +75,19 @@ struct SolverOptions {
 /// The relative error at which a solver with these options stops.
 inline double tolerance_of(const SolverOptions& options) { return options.relative_error.value_or(default_tolerance); }
 
-/// Solves B = E + R F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
-/// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times
-/// the largest row sum of F, of docs/theory/solvers-and-bounds.md; where kappa is not below 1, by the bound of every
-/// patch of the same section; where that is not known either, by the relative residual, with an infinite error_bound in
-/// the history. What cannot converge ends after max_iterations with converged = false and its history; a singular
-/// system at once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled;
-/// InputError, before any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it
-/// is not reciprocal: then there is no kappa, and the bound is that of every patch; or takes_diagonal() and there are
-/// sheets.
+/// Solves B = E + R F B. Bands without light are not solved. Bands with equal reflectances whose lamps differ by a
+/// factor are solved once, unless SolverOptions::every_band.
+///
+/// The stopping criterion is the first of these that is known, see docs/theory/solvers-and-bounds.md:
+/// - the bound ||r||_A / (1 - kappa), kappa = rho_max times the largest row sum of F, if kappa < 1;
+/// - the bound of every patch,
+/// - the relative residual, with an infinite error_bound in the history.
+/// Without convergence it returns after max_iterations with converged = false and its history. For a singular system it
+/// returns at once, with Solution::trapped, unless the largest row sum is infinite.
+///
+/// A transport that is not reciprocal has no kappa; the bound of every patch applies. \throws Cancelled; InputError,
+/// before any work, if takes_rows() and the transport is no RowTransport, if takes_reciprocity() and the transport is
+/// not reciprocal, or if takes_diagonal() and there are sheets.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

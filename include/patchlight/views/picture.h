@@ -59,9 +59,9 @@ double exposure_of(const Simulation& simulation);
 /// unfinished. \throws Cancelled before there is anything; InputError for a camera that is none.
 Picture take_picture(const Simulation& simulation, const PictureOptions& options = {}, const Observer& observer = {});
 
-/// A picture of a model as it is, without light: each point as bright as its reflectance times its ambient occlusion
-/// (SolvedSurface::ambient_occlusion) within a distance in meters. Of the options camera, width and height count.
-/// \throws InputError for a camera that is none.
+/// A picture of a model without light: each point is as bright as its reflectance times its ambient occlusion
+/// (SolvedSurface::ambient_occlusion) within a distance in meters. Uses the options camera, width and height. \throws
+/// InputError for an invalid camera.
 Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance);
 
 /// How a lightmap is baked.

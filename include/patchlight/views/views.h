@@ -52,9 +52,9 @@ struct ObserverReading {
   std::optional<double> unified_glare_rating = {};  ///< CIE 117:1995; nothing without sources or background
 };
 
-/// The readings of observers in a solved scene. Windows, and things brighter than 500 cd/m^2 and four times the mean of
-/// the half space that is seen, glare, and so do measured luminaires by the sides of their luminous openings, with I /
-/// A_p as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
+/// The readings of observers in a solved scene. Sources of glare are windows and surfaces brighter than 500 cd/m^2 and
+/// than four times the mean of the visible half space. Measured luminaires glare by the sides of their luminous
+/// openings, with the luminance I / A_p. Lamps without extent give light, but no glare. \throws Cancelled.
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
                                             const Observer& observer = {});
 
