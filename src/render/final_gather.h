@@ -16,11 +16,11 @@
 
 namespace patchlight {
 
-/// The luminances of a pixel's samples, in order: sums over four quarters of them, so that the variance shows the gain
-/// by the stratification of each quarter.
+/// The luminances of a pixel's samples, in order, as sums over their four quarters. So the variance includes the gain
+/// from the stratification of each quarter.
 class PixelSamples {
  public:
-  /// Makes room for `count` samples in all, a power of two from 4 up, of which those there are the first.
+  /// Reserves `count` samples in total, a power of two from 4 up. Existing samples are the first of them.
   void extend(std::uint32_t count);
   void add(double luminance);
 
@@ -36,17 +36,17 @@ class PixelSamples {
   std::array<double, 4> quarters_{};
 };
 
-/// The variances of the means of pixels, row by row of `width`: from their own and those around, each relative to its
-/// own reference_luminances(), as that of few samples is small by chance. Beside a lamp a dark pixel takes no share of
-/// the lamp's variance that its own luminance does not call for.
+/// The variances of the means of pixels, row by row of `width`. They pool a pixel with its neighbors, each relative to
+/// its own reference_luminances(), as the variance of few samples may be too small by chance. So a dark pixel beside a
+/// lamp does not take over the variance of the lamp.
 Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int width);
 
 /// The root mean square over the pixels of their standard errors, each relative to its reference_luminances(); 0 where
 /// no pixel is lit.
 double mean_relative_error(const std::vector<PixelSamples>& pixels, const Eigen::VectorXd& errors);
 
-/// How many samples each pixel should have, so that its mean has the wanted standard error, relative to its
-/// reference_luminances(): powers of two, up to `most`; at least as many as are there.
+/// The number of samples of each pixel for which its mean has the requested standard error, relative to its
+/// reference_luminances(). Powers of two, up to `most`, not below the present number.
 std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixels, int width, double error,
                                           std::uint32_t most);
 
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixel
 struct FinalGatherOptions {
   int width = 800;
   int height = 800;
-  double error = 0.01;    ///< wanted standard error of a pixel's luminance, PictureOptions::error
+  double error = 0.01;    ///< requested standard error of a pixel's luminance, PictureOptions::error
   int most_samples = 64;  ///< of a pixel, a power of two and at least 4
   HemisphereOptions hemisphere = {};
   std::uint32_t seed = 1;

@@ -16,10 +16,10 @@ struct SizedMesh {
   PatchMesh mesh;
 };
 
-/// Meshes each of which is cut from the one before, so that means over the patches of all can be taken from the last
-/// without an error of their own: where a reference's patches reach over the edge of another patch, it would be off by
-/// as much as they are large. Longest edges are halved each time, so that there are about four times the patches; what
-/// would have more than half the patches of the next one is left out.
+/// Nested meshes, each cut from the previous one, so that means over their patches are exact sums of patches of the
+/// last one. Patches of a reference that cross the edge of another patch would add an error of about their size. Each
+/// step halves the longest edges and gives about four times the patches. A mesh with more than half the patches of the
+/// next one is left out.
 struct NestedSizes {
   std::vector<SizedMesh> sizes;  ///< from coarse to fine; the last one is about what the request asks for
   SizedMesh finer;               ///< with half the edges
@@ -152,8 +152,8 @@ double seconds_of(const StudySetting& setting);
 double cpu_seconds_of(const StudySetting& setting);
 
 /// The power p with which an error falls with the edge of the patches: e1 / e2 = (h1 / h2)^p from `coarse` to `fine`.
-/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall,
-/// or where the edges of `fine` are less than four times as long as those of the reference.
+/// The reference has `reference_patches`, infinite for the exact solution. NaN if the errors do not fall, or if the
+/// edges of `fine` are less than four times as long as those of the reference.
 double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
 
 /// The sweep with its orders filled in.
@@ -185,7 +185,7 @@ enum class Finding {
 
 /// The cost of an error.
 struct Price {
-  double error = 0;  ///< asked for
+  double error = 0;  ///< requested
   Finding finding = Finding::not_reached;
   double cpu_seconds = 0;
   double order = 0;  ///< by which it was extrapolated

@@ -14,19 +14,19 @@
 
 namespace patchlight {
 
-/// A flat piece of one side of a polygon, whose mean irradiance is wanted.
+/// A flat piece of one side of a polygon; its mean irradiance is computed.
 struct PathReceiver {
   std::array<Point, 4> corners;  ///< convex, meters; a triangle repeats its last
   PolygonIndex polygon = 0;
   Side side = Side::front;
 };
 
-/// Several receivers as one, whose mean irradiance is wanted.
+/// Several receivers as one; their mean irradiance is computed.
 struct PathRegion {
   std::vector<PathReceiver> receivers;
 };
 
-/// Paths come in so many batches, each stratified on its own: their scatter is the standard error.
+/// The number of batches of paths, each stratified separately; their scatter gives the standard error.
 inline constexpr std::uint32_t path_batches = 32;
 
 /// How many paths are traced.

@@ -9,26 +9,26 @@
 
 namespace patchlight {
 
-/// A line on a polygon along which another face touches it, crosses it, or ends close before it: there the light on the
-/// polygon changes at once, or nearly so.
+/// A line on a polygon along which another face touches it, crosses it, or ends close before it. The light on the
+/// polygon changes abruptly there.
 struct ContactLine {
   Point from;      ///< in the polygon's plane, meters
   Point to;        ///< likewise
-  double gap = 0;  ///< how far the other face is from the line at most, meters; 0 where it touches or crosses
+  double gap = 0;  ///< the largest distance of the other face from the line, meters; 0 where it touches or crosses
 };
 
-/// The lines of contact of a scene, and how fine these have to be.
+/// The lines of contact of a scene, and the resolution at which patches follow them.
 struct ContactLines {
   std::vector<std::vector<ContactLine>> on;  ///< at the index of each polygon; empty: there are none
-  bool everywhere = false;                   ///< faces cross so often that none was looked for
+  bool everywhere = false;                   ///< faces cross so often that the search was skipped
   double size = 0;                           ///< the root of the area of all faces, meters
-  /// Meters. Patches with longer edges follow the lines as those of this length do.
+  /// Meters. Patches with longer edges follow the lines at this resolution.
   double detail = std::numeric_limits<double>::infinity();
   double of_edge = 1;  ///< patches follow the lines as those with this part of their edges do: a half where they will
                        ///< be cut in four
 };
 
-/// How many there are on all polygons.
+/// The number of lines on all polygons.
 std::size_t number_of(const ContactLines& contacts);
 
 /// The lines of contact on every polygon with a kept side, without those bent by rounding. Faces touch if they are

@@ -31,27 +31,25 @@ std::vector<Solver> all_solvers();
 /// The solver's name as on the command line.
 const char* name_of(Solver solver);
 
-/// True for the two that shoot: they take single rows of the transport, never all at once.
+/// True for the two shooting solvers: they take single rows of the transport, never all at once.
 bool is_shooting(Solver solver);
 
-/// True for those that sweep or shoot: they take a RowTransport. The others need no more than H = F B.
+/// True for solvers that sweep or shoot: they need a RowTransport. The others only need H = F B.
 bool takes_rows(Solver solver);
 
-/// True for those that take a transport with A_i F_ij = A_j F_ji alone: conjugate gradients.
+/// True for solvers that need a reciprocal transport, A_i F_ij = A_j F_ji: conjugate gradients.
 bool takes_reciprocity(Solver solver);
 
-/// True for those that take patches which scatter each by itself, without translucent sheets: all but GMRES, BiCGSTAB
-/// and Jacobi's iteration.
+/// True for solvers that need a diagonal R, without translucent sheets: all but GMRES, BiCGSTAB and Jacobi iteration.
 bool takes_diagonal(Solver solver);
 
-/// The solver that does well in any room: conjugate gradients, or GMRES where these do not hold, as form factors are
-/// not reciprocal or R is not diagonal.
+/// The default solver: conjugate gradients, or GMRES if form factors are not reciprocal or R is not diagonal.
 Solver usual_solver(const TransportOperator& transport, const RadiosityProblem& problem);
 
-/// The solver's relative error when none is asked for.
+/// The default relative error of the solver.
 inline constexpr double default_tolerance = 1e-6;
 
-/// Which solver, and when it stops.
+/// The solver and its stopping criteria.
 struct SolverOptions {
   Solver solver = Solver::cg;
   std::optional<double> relative_error = {};   ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below; left
