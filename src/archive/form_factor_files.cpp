@@ -173,7 +173,7 @@ Json files_part(const FormFactorResult& result) {
   part[file_name::lost_share] = file_name::about_lost_share;
   part[file_name::raw_row_sum] = "sum_j F_ij before closure; unit 1";
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
-  part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
+  part[file_name::scene] = "the model: polygons, materials, and which sides are simulated; coordinates in m";
   return part;
 }
 

@@ -36,10 +36,10 @@ void write_groups(const std::filesystem::path& file, const GroupFactors& groups)
 /// How a matrix is stored.
 enum class MatrixFormat {
   npy,           ///< numpy's .npy: dense, 32-bit floats
-  matrix_market  ///< Matrix Market .mtx: coordinates of what is not zero
+  matrix_market  ///< Matrix Market .mtx: coordinates of the nonzero entries
 };
 
-/// What form factors are made of, for writing.
+/// The input of write_form_factors().
 struct FormFactorResult {
   const Scene& scene;
   const FormFactors& form_factors;
@@ -77,7 +77,7 @@ struct FormFactorInfo {
   int rays = 0;                      ///< AssemblyOptions::rays
   bool is_specular = false;          ///< rays go on from clear faces or mirrors: there are stops
   std::string closure;               ///< the method that closed them; empty if none did
-  double max_edge = 0;               ///< metres
+  double max_edge = 0;               ///< meters
   Sides sides = Sides::automatic;
   bool contact_lines = true;                      ///< MeshOptions::contact_lines
   std::optional<std::size_t> contact_line_count;  ///< how many were followed; open where it was not stored
@@ -109,7 +109,7 @@ void write_materials(const std::filesystem::path& folder, const Scene& scene, co
 /// Writes lost_share.npy.
 void write_shares(const std::filesystem::path& folder, const LostShare& lost);
 
-/// What is stored of the patches.
+/// The stored areas and lost shares of the patches.
 struct StoredShares {
   Eigen::VectorXd area;  ///< exposed, m^2
   LostShare lost;

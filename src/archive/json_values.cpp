@@ -121,7 +121,7 @@ nlohmann::ordered_json json_of(const SamplingError& error) {
 
 SamplingError sampling_error_of(const nlohmann::json& json) {
   SamplingError error;
-  // Folders of earlier versions tell less.
+  // Folders of earlier versions lack this part.
   if (json.is_null() || !json.contains("weights")) return error;
   for (std::size_t effort = 0; effort < sampling_efforts; ++effort) {
     error.partial[effort] = audited_of<SamplingError::bins>(

@@ -25,7 +25,7 @@ std::vector<std::string> texts_of(const Json& json);
 Spectrum spectrum_of(const Json& json);
 Vector vector_of(const Json& json);
 
-/// \throws std::out_of_range that says `otherwise`.
+/// \throws std::out_of_range with the message `otherwise` if the condition is false.
 void require(bool condition, const std::string& otherwise);
 
 /// The counts of the audit, and the bounds that follow; null when no pair was sampled a second time.

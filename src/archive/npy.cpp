@@ -38,7 +38,7 @@ void close_or_fail(std::ofstream& stream, const std::filesystem::path& file) {
   if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
 }
 
-// The bytes that tell how long the header is: two in version 1, four later.
+// The length of the header: two bytes in version 1, four later.
 std::size_t header_length(std::ifstream& stream, int version) {
   std::array<unsigned char, 4> bytes{};
   const std::size_t count = version == 1 ? 2 : 4;
@@ -60,7 +60,7 @@ std::optional<std::string> read_header(std::ifstream& stream) {
   return stream ? std::optional(text) : std::nullopt;
 }
 
-// What follows a key of the dictionary; nothing when it has no such key.
+// The text after a key of the dictionary; empty if there is no such key.
 std::string_view value_of(std::string_view dictionary, std::string_view key) {
   const std::size_t place = dictionary.find(key);
   if (place == std::string_view::npos) return {};
@@ -94,7 +94,7 @@ std::string open_npy(const std::filesystem::path& file, std::ifstream& stream) {
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
   throw InputError(file.string(), "found " + found +
                                       "; expected an array of numpy (.npy) of type '<f4' or '<f8', in C order, of one "
-                                      "or two dimensions, and as many values as its header says");
+                                      "or two dimensions, and as many values as its header states");
 }
 
 template <class Number>

@@ -62,7 +62,7 @@ std::size_t npy_count(const std::filesystem::path& file);
 /// Reads an array of 32 or 64-bit floats in C order of one dimension (one column) or two, row by row.
 class NpyReader {
  public:
-  /// \throws InputError when the file is not such an array, or does not hold as many values as it says.
+  /// \throws InputError if the file is not such an array, or its number of values differs from its header.
   explicit NpyReader(const std::filesystem::path& file);
 
   std::size_t rows() const { return rows_; }

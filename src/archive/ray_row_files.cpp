@@ -287,7 +287,7 @@ std::map<std::string, std::string> meaning_of_stop_files() {
       all[file_of({}, which, half).string()] = meaning.at(which);
   const std::array<const char*, 4> of_entry = {"the rows of entries by specular ways", "the columns of these entries",
                                                "the classes of their ways, as listed in classes",
-                                               "their form factors, in the mean of all bands; unit 1"};
+                                               "their form factors, averaged over all bands; unit 1"};
   for (std::size_t half = 0; half < 2; ++half)
     for (std::size_t which = 0; which < of_entry.size(); ++which)
       all[in_half({}, file_name::of_classes.at(which), half).string()] = of_entry.at(which);
@@ -365,7 +365,7 @@ Json files_of_rows(bool is_specular) {
   part[file_name::reflectance] = "diffuse reflectance of each patch, a column per band; unit 1";
   part[file_name::lost_share] = file_name::about_lost_share;
   part[file_name::mesh] = "the patches, in the order of the rows; coordinates in m";
-  part[file_name::scene] = "the model: polygons, materials, and which sides take part; coordinates in m";
+  part[file_name::scene] = "the model: polygons, materials, and which sides are simulated; coordinates in m";
   return part;
 }
 
@@ -400,7 +400,7 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// Where rows begin among all their entries. What is below 0 in the file is a very large number here.
+// The first entry of each row. A negative number in the file becomes a very large number here.
 std::vector<std::uint64_t> read_begins(const std::filesystem::path& file, std::size_t rows) {
   auto begins = read_npy_as<std::vector<std::uint64_t>, std::int64_t>(file, rows + 1);
   const bool rises = begins.front() == 0 && std::is_sorted(begins.begin(), begins.end());
@@ -410,7 +410,7 @@ std::vector<std::uint64_t> read_begins(const std::filesystem::path& file, std::s
 }
 
 LargeArray<PatchIndex> read_columns(const std::filesystem::path& file, std::size_t count, std::size_t patches) {
-  // What is below 0 in the file is a very large number here.
+  // A negative number in the file becomes a very large number here.
   const auto is_patch = [&](std::int32_t j) { return static_cast<std::uint32_t>(j) < patches; };
   return read_npy_as<LargeArray<PatchIndex>, std::int32_t>(file, count, [&](std::span<const std::int32_t> piece) {
     const auto other = std::find_if_not(piece.begin(), piece.end(), is_patch);
@@ -455,7 +455,7 @@ void require_sums(const std::filesystem::path& file, const RayRows& rows, const 
     if (is_weighed && (is_empty || std::abs(sum - expected) <= rounding_of_entries)) continue;
     std::ostringstream found, right;
     found << "form factors that sum to " << sum << " in row " << i + 1;
-    right << expected << ", as lost_share.npy says";
+    right << expected << ", as lost_share.npy states";
     refuse(file, found.str(), right.str());
   }
 }
@@ -545,7 +545,7 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
   rows.distance = read_npy_as<std::vector<float>, float>(folder / file_name::hit_distance, patches);
   const auto is_length = [](float metres) { return std::isfinite(metres) && metres >= 0; };
   if (!std::all_of(rows.distance.begin(), rows.distance.end(), is_length))
-    refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "metres from 0 on");
+    refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "meters, not below 0");
   rows.directed = read_npy_bytes(folder / file_name::directed, patches);
   rows.rays = rows.halves[0].hits.size() + rows.halves[1].hits.size();
   exchange.lamps = read_lamps(folder / file_name::lamps, mesh);

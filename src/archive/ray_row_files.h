@@ -19,8 +19,8 @@ struct RowScene {
   EffectOptions effects;  ///< asked for: whether anything is in the way of rays
 };
 
-/// 16 hexadecimal digits of a SHA-256 of all that rows depend on: the faces and what they let through, the patches, how
-/// rays are sent, and how this library finds rows.
+/// 16 hexadecimal digits of a SHA-256 of everything that rows depend on: the faces and their transmittance, the
+/// patches, the ray settings, and the version of the row algorithm.
 std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions& options,
                     std::span<const float> bright_densities);
 
@@ -29,7 +29,7 @@ std::string row_key(const RowScene& of, const PatchMesh& mesh, const RayOptions&
 /// keep() throws OutputError where a file cannot be written.
 RowBlocks row_blocks_in(const std::filesystem::path& folder, const std::string& key);
 
-/// Removes the files of these keys. What cannot be removed stays.
+/// Removes the files of these keys. Files that cannot be removed stay.
 void remove_row_blocks(const std::filesystem::path& folder, std::span<const std::string> keys);
 
 /// Writes a folder of rows of rays, whole or not at all: for both halves of the rays sparse rows, the lamps that are

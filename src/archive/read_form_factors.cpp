@@ -27,11 +27,12 @@ struct Range {
   double high = 0;
 };
 
-// The largest sums that sampled form factors can have. An exchange area is below the mean of both patches' areas, as it
-// is the share of rays from either that arrive, or a form factor below 1 from the smaller one. Sampled by area it has
-// no bound: points at the distance r weigh up to 1 / (2 pi r^2). On patches of size h that share an edge the chance of
-// a weight above K / h^2 is below K^-1.5 / 15, so that of N patches with n samples of each pair none has a row above L
-// but by a chance of N n^-0.5 L^-1.5: 1e-6 for N = 1e5, n = 4 and L = 1e7.
+// The largest possible row sums of sampled form factors. An exchange area is below the mean of both patch areas: it is
+// the fraction of rays from either patch that arrive, or a form factor below 1 from the smaller patch. Sampled by area,
+// it has no bound: points at the distance r have weights up to 1 / (2 pi r^2).
+// Consider patches of size h that share an edge. The chance of a weight above K / h^2 is below K^-1.5 / 15. So with N
+// patches and n samples of each pair, the chance of a row above L is N n^-0.5 L^-1.5. That is 1e-6 for N = 1e5, n = 4
+// and L = 1e7.
 Eigen::ArrayXd most_row_sums(const FormFactorInfo& info, const PatchMesh& mesh, const Eigen::VectorXd& exposed) {
   const Eigen::Map<const Eigen::ArrayXd> area(mesh.area.data(), exposed.size());
   const Eigen::ArrayXd bounded = (static_cast<double>(area.size()) * area + area.sum()) / 2 / exposed.array();
@@ -110,7 +111,7 @@ Estimator estimator_of(const std::string& name) {
   throw InputError("estimator", "found '" + name + "'; expected auto, area, point-polygon, hemisphere or contour");
 }
 
-// What both kinds of form factors have.
+// The part that is common to both kinds of form factors.
 FormFactorInfo info_of_any(const nlohmann::json& json) {
   FormFactorInfo info;
   info.geometry_sha256 = json.at("geometry_sha256").get<std::string>();
@@ -253,7 +254,7 @@ ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen
   return S;
 }
 
-// What was kept of the entries' errors; nothing where nothing was.
+// The stored errors of the entries; empty if there are none.
 EntryErrors read_entry_errors(const std::filesystem::path& file, const PatchMesh& mesh) {
   if (!std::filesystem::exists(file)) return {};
   const std::size_t size = mesh.size();

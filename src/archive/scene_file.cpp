@@ -255,7 +255,7 @@ Scene with_lights_of(Scene scene, const Json& json) {
   return scene;
 }
 
-// Where irradiance and pictures of a scene are wanted.
+// The sensors and cameras of a scene.
 Json views_part(const Scene& scene) {
   Json sensors = Json::array();
   for (const SensorGroup& group : scene.sensors) sensors.push_back(json_of_sensors(group));

@@ -7,7 +7,7 @@
 
 namespace patchlight {
 
-/// The scene that form factors are of, and the sides of it that take part.
+/// The scene of stored form factors, and its simulated sides.
 struct StoredScene {
   Scene scene;  ///< its diagnostics without their faces
   KeptSides sides;

@@ -18,7 +18,7 @@ namespace {
 
 void append(std::string& bytes, const Vector& vector) {
   for (const double coordinate : vector) {
-    const auto raw = std::bit_cast<std::array<char, sizeof(double)>>(coordinate + 0.0);  // -0 counts as 0
+    const auto raw = std::bit_cast<std::array<char, sizeof(double)>>(coordinate + 0.0);  // -0 becomes 0
     bytes.append(raw.data(), raw.size());
   }
 }
@@ -26,10 +26,10 @@ void append(std::string& bytes, const Vector& vector) {
 class Bytes {
  public:
   void number(double value) {
-    const auto raw = std::bit_cast<std::array<char, sizeof(double)>>(value + 0.0);  // -0 counts as 0
+    const auto raw = std::bit_cast<std::array<char, sizeof(double)>>(value + 0.0);  // -0 becomes 0
     text_.append(raw.data(), raw.size());
   }
-  // With how many there are, so that two lists cannot be taken for another two.
+  // Includes their number, so that two lists cannot be confused with another two.
   void numbers(std::span<const double> values) {
     number(static_cast<double>(values.size()));
     for (const double value : values) number(value);

@@ -7,8 +7,8 @@
 
 namespace patchlight {
 
-/// SHA-256 of what the mesh tells form factors: the number of corners, the corners and the normal of every patch, in
-/// order, as doubles to the last bit. 64 hexadecimal digits.
+/// SHA-256 of the mesh data that form factors depend on: the number of corners, the corners and the normal of every
+/// patch, in order, as doubles to the last bit. 64 hexadecimal digits.
 std::string geometry_hash(const PatchMesh& mesh);
 
 /// SHA-256, hexadecimal, of all that a solution follows from: faces, materials and lights of a scene, whatever its

@@ -44,13 +44,12 @@ bool looks_at_from_close(const Sensor& sensor, const PatchMesh& mesh, PatchIndex
 Diagnostic finding(const SensorGroup& group, std::size_t k, Standing standing) {
   std::ostringstream text;
   const Point& point = group.sensors[k].point;
-  text
-      << place_of(group, k) << " at " << point.x() << ", " << point.y() << ", " << point.z() << " m "
-      << (standing == Standing::inside_wall
-              ? "lies inside a wall, or in a closed room without a lamp, where nothing is to be read, and is left out "
-                "of minimum, mean and maximum. Move it into the room, or give the room a lamp"
-              : "lies in a surface that it does not face along: rounding decides on which side of it. Move it away, by "
-                "a millimetre or more");
+  text << place_of(group, k) << " at " << point.x() << ", " << point.y() << ", " << point.z() << " m "
+       << (standing == Standing::inside_wall
+               ? "lies inside a wall, or in a closed room without a lamp, where nothing is to be read, and is left out "
+                 "of minimum, mean and maximum. Move it into the room, or give the room a lamp"
+               : "lies in a surface without facing along its normal, so rounding decides its side. Move it away by at "
+                 "least a millimeter");
   return {DiagnosticCode::doubtful_sensor, text.str()};
 }
 
@@ -90,8 +89,8 @@ Diagnostics sensors_far_off(const Scene& scene, const std::vector<SensorGroup>& 
   if (count == 0) return {};
   return {{DiagnosticCode::doubtful_sensor,
            (count == 1 ? "1 sensor lies" : std::to_string(count) + " sensors lie") +
-               " farther from the model than that is long (the first: " + first +
-               "). Are they in the model's unit? Points for a scene file are in metres, whatever its unit",
+               " farther from the model than the model is long (the first: " + first +
+               "). Are they in the model's unit? Points in a scene file are in meters, independent of its unit",
            count}};
 }
 
@@ -115,9 +114,9 @@ Diagnostics sensors_close_to_pictures(const Scene& scene, const std::vector<Sens
   if (count == 0) return {};
   return {{DiagnosticCode::doubtful_sensor,
            (count == 1 ? "1 sensor looks" : std::to_string(count) + " sensors look") +
-               " at patches with pictures from nearer than one and a half times these are wide (the first: " + first +
-               "): a patch sends the mean of its part of the picture, and no error bar of a sensor holds what the "
-               "texels differ. Ask for smaller patches, as by --max-edge",
+               " at textured patches from less than 1.5 times their width (the first: " + first +
+               "): a patch emits the mean of its part of the texture, and error bars of sensors do not include the "
+               "differences between texels. Use smaller patches, e.g. with --max-edge",
            count}};
 }
 

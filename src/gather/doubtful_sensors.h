@@ -9,16 +9,16 @@
 
 namespace patchlight {
 
-/// A sentence for each sensor that does not stand free, with its file and line; at most five, and then one
-/// that counts the rest. `places` as place_sensors() gives them.
+/// Messages for sensors that do not stand free, with file and line: at most five, then one with the number of the rest.
+/// `places` comes from place_sensors().
 Diagnostics doubtful_sensors(const std::vector<SensorGroup>& sensors, std::span<const SensorPlace> places);
 
-/// A sentence where sensors lie farther from the scene's bounds than these are long, as points in another unit do.
+/// A message if sensors lie farther from the scene's bounds than the size of the bounds, e.g. points in another unit.
 Diagnostics sensors_far_off(const Scene& scene, const std::vector<SensorGroup>& sensors);
 
-/// A sentence where sensors look at patches with pictures from nearer than one and a half times these are wide: each
-/// patch sends them the mean of its part of the picture, and no error bar holds what the texels differ. Empty without
-/// such sensors. O(sensors x patches with pictures).
+/// A message if sensors look at textured patches from less than 1.5 times their width. Each patch sends them the mean
+/// of its part of the texture, and error bars do not include the differences between texels. Empty without such
+/// sensors. O(sensors x textured patches).
 Diagnostics sensors_close_to_pictures(const Scene& scene, const std::vector<SensorGroup>& sensors,
                                       const PatchMesh& mesh);
 

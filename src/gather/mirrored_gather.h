@@ -6,7 +6,7 @@
 
 namespace patchlight {
 
-/// How the light that sensors see in mirrors is sampled.
+/// Sampling of the light that sensors see in mirrors.
 struct MirroredGatherOptions {
   int rays = 4096;  ///< directions from each sensor, a power of two
   std::uint64_t seed = 1;

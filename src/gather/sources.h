@@ -22,8 +22,8 @@ struct Source {
   double light_share = 0;      ///< of the sensor's unoccluded irradiance, mean of the bands that have any
 };
 
-/// Those before which the sensor stands by more than `tolerance`, in meters, and that are before it, in the order of
-/// the mesh, by the light of the given radiosity. No side of a polygon on which a sensor lies is before it.
+/// The patches that a sensor may see: sensor and patch lie before each other by more than `tolerance`, in meters. In
+/// the order of the mesh, with light from the given radiosity. No side of a polygon on which a sensor lies counts.
 std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
                                    double tolerance);
 

@@ -8,8 +8,8 @@
 
 namespace patchlight {
 
-/// Luminous efficacy that goes with radiometric RGB, lm/W (the convention of Radiance). The luminous weights
-/// of bands of wavelengths are such that times it they give 683 lm/W at the peak of V(lambda).
+/// Luminous efficacy of radiometric RGB, lm/W (the convention of Radiance). Bands of wavelengths have luminous weights
+/// that give, times it, 683 lm/W at the peak of V(lambda).
 inline constexpr double luminous_efficacy = 179.0;
 
 /// Luminance in cd/m^2 of a radiance in W/(m^2 sr): 179 lm/W times the sum of the bands by their luminous weights. The
@@ -25,9 +25,8 @@ Spectrum luminous_shares(const Bands& bands);
 /// X, Y and Z (CIE 1931) of a radiance, Y in cd/m^2 as luminance(); of an irradiance Y is in lx.
 Eigen::Vector3d xyz_of(const Spectrum& radiance, const Bands& bands);
 
-/// The correlated color temperature in K: that of the black body whose chromaticity is nearest in the CIE 1960 diagram
-/// (CIE 15:2004, 9.5). Nothing where it has no meaning: farther off than 0.05, below 1,000 K, above 50,000 K, or no
-/// light.
+/// The correlated color temperature in K: that of the black body with the nearest chromaticity in the CIE 1960 diagram
+/// (CIE 15:2004, 9.5). Empty if it is meaningless: a distance above 0.05, below 1,000 K, above 50,000 K, or no light.
 std::optional<double> correlated_colour_temperature(const Eigen::Vector3d& xyz);
 
 /// True when bands are of wavelengths, so that colors beyond linear RGB are known.

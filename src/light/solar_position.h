@@ -18,15 +18,15 @@ struct Instant {
   double hour = 0;  ///< since midnight; may lie outside 0 to 24, as a time zone leaves it
 };
 
-/// Where the sun stands, degrees.
+/// The position of the sun, degrees.
 struct SolarPosition {
   double altitude = 0;  ///< above the horizon, without refraction
   double azimuth = 0;   ///< from north over east, 0 to 360
 };
 
-/// The sun's position by the solar coordinates of low accuracy of Meeus, Astronomical Algorithms (2nd ed. 1998),
-/// chapter 25, and the sidereal time of chapter 12: within 0.01 degrees from 1900 to 2100. Refraction, which lifts the
-/// sun by 0.02 degrees at 40 degrees of altitude and by 0.5 at the horizon, and parallax, 0.0024, are left out.
+/// The sun's position by the low-accuracy solar coordinates of Meeus, Astronomical Algorithms (2nd ed. 1998), chapter
+/// 25, and the sidereal time of chapter 12. Accurate to 0.01 degrees from 1900 to 2100. Neglects parallax, 0.0024
+/// degrees, and refraction, 0.02 degrees at an altitude of 40 degrees and 0.5 at the horizon.
 SolarPosition solar_position(const Place& place, const Instant& instant);
 
 /// The unit vector towards a position of the sky; `up` and `north` are unit vectors at right angles.

@@ -11,8 +11,8 @@
 
 namespace patchlight {
 
-/// Shadow rays of a patch of mean size; others take a quarter to four times as many, by the square root of their area,
-/// over mirrors no more than as many. Powers of two that are at least 4 stratify best. Points take sixteen times as
+/// Shadow rays of a patch of mean size. Other patches take a quarter to four times as many, by the square root of their
+/// area; over mirrors no more than this number. Powers of two of at least 4 stratify best. Points take sixteen times as
 /// many to a ball and over mirrors, and four times as many to the sky.
 struct LightingOptions {
   int lamp_samples = 64;  ///< per luminaire; where they would be more than 16, none to a ball that nothing can hide;
@@ -21,14 +21,14 @@ struct LightingOptions {
   int mirrored_samples = 64;  ///< per source and way over mirrors, see mirrored_irradiance(); 2 or more
   int sky_samples = 512;      ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
-  std::vector<double> areas = {};  ///< per patch: in proportion to which it matters, m^2; empty: its own area
+  std::vector<double> areas = {};  ///< per patch: its importance, m^2; empty: its own area
   double usual_area = 0;           ///< area of the patch that takes just these numbers of rays, m^2; 0: the mean of all
   std::span<const std::uint8_t> doublings = {};  ///< per patch: how often that number is doubled; empty: never
-  std::uint32_t alike = 1;  ///< 1 or more: so many patches that follow each other take the same samples, so that little
-                            ///< noise is in their differences
+  std::uint32_t alike = 1;  ///< 1 or more: this many consecutive patches take the same samples, which reduces the
+                            ///< noise in their differences
 };
 
-/// Irradiance by light that comes from no patch, W/m^2: one row per patch or point, one column per band.
+/// Irradiance by light that does not come from patches, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
   Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
@@ -38,20 +38,20 @@ struct DirectIrradiance {
                          ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
 };
 
-/// More light on the same patches or points, whose errors have nothing to do with each other.
+/// Adds more light on the same patches or points, with independent errors.
 void add(DirectIrradiance& direct, const DirectIrradiance& more);
 
-/// Mean irradiance of every patch, over the part of it over which no other polygon lies: Owen-scrambled Sobol points
-/// over patch and source, one shadow ray each; for luminaires without extent by the solid angle under which these see
-/// the patch. The share of a patch that these or the sun reach is exact up to rounding, from the outlines of all
-/// shadows, unless about 1,500 triangles stand between: however small a hole is, it is found. O(patches x (luminaires x
-/// lamp_samples + sun_samples + sky_samples)). \throws Cancelled.
+/// Mean irradiance of every patch, over its part that no other polygon covers. Uses Owen-scrambled Sobol points over
+/// patch and source, with one shadow ray each. Luminaires without extent are sampled by the solid angle of the patch
+/// from the luminaire. The fraction of a patch lit by these or by the sun is exact up to rounding, from the outlines of
+/// all shadows, so no hole is missed. With more than about 1,500 triangles in between, it is sampled too. O(patches x
+/// (luminaires x lamp_samples + sun_samples + sky_samples)). \throws Cancelled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});
 
-/// Standard errors of patches, each no less than the root mean square of those around it by their areas, m^2: the
-/// spread of four estimates may be small by chance, and all four may miss the edge of a shadow that patches around
-/// find. Errors are compared by as many rays, with LightingOptions::doublings.
+/// Standard errors of patches, each at least the root mean square of those around it, weighted by area, m^2. The spread
+/// of four estimates may be small by chance, and all four may miss the edge of a shadow that neighbors find.
+/// LightingOptions::doublings scale errors to equal numbers of rays.
 Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error,
                          std::span<const std::uint8_t> doublings = {});
 

@@ -14,8 +14,8 @@
 
 namespace patchlight {
 
-/// The shares of light, per band, that clear polygons transmit straight and that these and mirrors reflect without
-/// scattering, by the material of the side that the light meets.
+/// The fractions of light, per band, that clear polygons transmit straight, and that these and mirrors reflect
+/// specularly, by the material of the side that the light meets.
 class PaneSides {
  public:
   explicit PaneSides(const Scene& scene);
@@ -25,13 +25,13 @@ class PaneSides {
   /// False when no light goes through a polygon from either side.
   bool is_clear(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_clear; }
 
-  /// The share that a clear polygon lets through of the light that one sees in a unit direction.
+  /// The transmittance of a clear polygon for the light seen in a unit direction.
   Spectrum transmittance(PolygonIndex polygon, const Vector& direction) const;
 
-  /// False when a polygon reflects no light as a mirror does.
+  /// False if a polygon has no specular reflection.
   bool is_specular(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_specular; }
 
-  /// The share that is_specular() ones reflect so of the light that one sees in a unit direction, which meets the side.
+  /// The specular reflectance of an is_specular() polygon for the light seen in a unit direction, which meets the side.
   Spectrum specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
 
  private:
@@ -61,9 +61,9 @@ struct Passage {
   std::vector<Crossing> crossings;  ///< in order
 };
 
-/// How much light gets straight from one point to another: nothing where an opaque polygon stands between them, else
-/// the product of the transmittances of the clear openings on the way at the angle at which they are met, each face of
-/// which counts once. Points may lie outside the scene.
+/// The transmittance of the straight path between two points: 0 if an opaque polygon is in between. Otherwise it is the
+/// product of the transmittances of the clear openings on the path, at their angles of incidence; each face counts
+/// once. Points may lie outside the scene.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const Tracing& tracing);
@@ -77,14 +77,14 @@ class LightPaths {
   /// 1 for each segment that meets something opaque, else 0.
   std::vector<std::uint8_t> meets_opaque(std::span<const Segment> segments) const;
 
-  /// The first opaque polygon that each ray meets; clear ones let it pass.
+  /// The first opaque polygon that each ray meets; rays pass clear ones.
   std::vector<std::optional<Hit>> first_opaque_hits(std::span<const Ray> rays) const;
 
-  /// A point so far from another in a unit direction that all of the scene is nearer.
+  /// A point far enough from another, in a unit direction, that the whole scene is nearer.
   Point beyond(const Point& from, const Vector& direction) const;
 
-  /// False only when no polygon reaches between the front of a convex patch, or a point, and a ball by more than 1e-6
-  /// of the scene's extent: rays between them all get there. `normal` is the receiver's.
+  /// False only if no polygon reaches between the front of a convex patch, or a point, and a ball by more than 1e-6 of
+  /// the scene's extent. Then all rays between them are free. `normal` is the receiver's.
   bool may_be_hidden(std::span<const Point> receiver, const Vector& normal, const Point& centre, double radius) const;
 
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.

@@ -16,8 +16,7 @@ namespace patchlight {
 class Shades;
 struct Mirrors;
 
-/// The sources of light in a scene that are no patches, ready for direct_irradiance(). Immutable and safe to use from
-/// several threads.
+/// The light sources of a scene other than patches, prepared for direct_irradiance(). Immutable and thread-safe.
 struct Lighting {
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;  ///< nothing while it is below the horizon
@@ -47,15 +46,15 @@ struct SurfacePoint {
   PolygonIndex polygon = no_polygon;
 };
 
-/// From a luminaire. For a sphere one sample of its irradiance at the direction that (u, v) of the unit square stand
-/// for: uniform in the solid angle of the sphere (Shirley, Wang and Zimmerman 1996, section 3.2); its mean over the
-/// square is the irradiance.
+/// From a luminaire. For a sphere, returns one sample of its irradiance, at the direction for (u, v) of the unit
+/// square. Directions are uniform in the solid angle of the sphere (Shirley, Wang and Zimmerman 1996, section 3.2). The
+/// mean over the square is the irradiance.
 Arrival from_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at, const Eigen::Vector2d& uv);
 
 /// From the sun, which must be there.
 Arrival from_sun(const Lighting& lighting, const SurfacePoint& at);
 
-/// A triangle, whose last corner comes twice, or a convex quadrilateral that emits from its front.
+/// A triangle, with its last corner repeated, or a convex quadrilateral that emits from its front.
 struct LampFace {
   std::array<Point, 4> corners;
   Vector normal;  ///< unit

@@ -21,7 +21,7 @@ struct Ball {
   double radius = 0;
 };
 
-/// The least one around the middle of points.
+/// The smallest ball around the middle of points.
 Ball ball_around(std::span<const Point> points);
 
 /// The light of one sample of a source at a place if nothing is in the way.
@@ -51,10 +51,10 @@ struct MirroredSource {
 /// Luminaires and sun of a lighting, and lamps. Both must outlive the sources.
 std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps);
 
-/// The most mirrors on the way of light that is followed.
+/// The maximum number of mirrors on a path of light.
 inline constexpr std::size_t most_mirrors = 16;
 
-/// Light of which mirrors leave a smaller share is not followed.
+/// Paths whose mirrors leave a smaller fraction of the light are not followed.
 inline constexpr double least_reflectance = 1e-3;
 
 /// A side of a polygon that reflects light without scattering it: of a mirror, or of a clear polygon.
@@ -66,8 +66,8 @@ struct MirrorSide {
   double reflectance = 0;  ///< at most, over all bands; of a clear one that of light from all directions alike
 };
 
-/// Mirrors one after the other on the way from a receiver to a source. `image` reflects the place of a receiver at each
-/// of them: seen from the source the receiver is there, straight behind the last mirror.
+/// A chain of mirrors from a receiver to a source. `image` reflects a point of the receiver at each of them. From the
+/// source, the receiver appears at this image, straight behind the last mirror.
 struct MirrorChain {
   std::vector<MirrorSide> mirrors;
   double reflectance = 1;  ///< the product of theirs

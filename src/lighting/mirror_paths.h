@@ -15,7 +15,7 @@
 
 namespace patchlight {
 
-/// How much light gets from one point to another by way of mirrors: the product of their reflectances and of the
+/// The fraction of light from one point to another via mirrors: the product of the mirror reflectances and of the
 /// transmittances of LightPaths between them.
 class MirrorPaths {
  public:
@@ -34,8 +34,8 @@ class MirrorPaths {
   /// straight line from the receiver's image to the source misses one of them.
   Field transmittance(const MirrorChain& chain, const LightPaths& paths, std::span<const Segment> segments) const;
 
-  /// False where no straight line from the image of a receiver's ball to a source's ball, or in a source's direction,
-  /// meets the last mirror of a chain. Cheap, and true too often.
+  /// False if no straight line from the image of a receiver's ball to a source's ball, or in a source's direction,
+  /// meets the last mirror of a chain. Cheap and conservative: it may return true without need.
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const;
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const;
 
@@ -65,9 +65,9 @@ class MirrorView {
   /// Keeps references to `sides` and to the tracing's occluder of all faces.
   MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing);
 
-  /// Half of the samples stand for directions distributed as the cosine over the hemisphere, the others for places on
-  /// the mirrors before the receiver, both put together by the balance heuristic (Veach and Guibas 1995). Along each
-  /// direction every mirror and clear face that is met, up to something that lets nothing through, has a ray.
+  /// Half of the samples represent directions distributed as the cosine over the hemisphere, the others points on the
+  /// mirrors before the receiver. The balance heuristic combines both (Veach and Guibas 1995). Each direction has a ray
+  /// for every mirror and clear face on it, up to the first opaque face.
   void add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
                 std::vector<MirrorRay>& into) const;
 

@@ -11,7 +11,7 @@
 
 namespace patchlight {
 
-/// The ways of the light of lamps, luminaires, sun and sky over a scene's mirrors and clear faces.
+/// The paths of light from lamps, luminaires, sun and sky via the mirrors and clear faces of a scene.
 struct Mirrors {
   MirrorPaths paths;
   MirrorView view;

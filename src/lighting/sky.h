@@ -6,9 +6,9 @@
 
 namespace patchlight {
 
-/// A sky ready to be asked: relative radiance (1 + a exp(b / cos zeta)) (1 + c exp(d gamma) + e cos^2 gamma) at the
-/// zenith angle zeta and the angle gamma from the sun, times `colour`. The CIE clear and the Perez sky have this form;
-/// the uniform and the CIE overcast sky need no coefficients.
+/// A sky prepared for evaluation. The relative radiance is (1 + a exp(b / cos zeta)) (1 + c exp(d gamma) + e cos^2
+/// gamma) at the zenith angle zeta and the angle gamma from the sun, times `colour`. The CIE clear and the Perez sky
+/// have this form; the uniform and the CIE overcast sky need no coefficients.
 struct SkyModel {
   SkyKind kind = SkyKind::uniform;
   Vector up = Vector::UnitZ();

@@ -141,7 +141,7 @@ double size_of(const std::vector<FlatLine>& lines) {
 // Contact lines whose gaps are of about one width.
 struct GapClass {
   std::vector<FlatLine> lines;
-  double widest;  // metres; 0: they touch
+  double widest;  // meters; 0: they touch
 };
 
 // The ones with a gap that patches of this detail are wider than.

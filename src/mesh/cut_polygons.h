@@ -29,31 +29,30 @@ struct LineEnd {
 struct CutPolygon {
   std::vector<Point> corners;
   Vector normal;    ///< unit, of the front
-  double near = 0;  ///< metres: marks that are no farther from each other are one
+  double near = 0;  ///< meters: marks no farther apart are merged
   std::vector<Mark> marks;
   std::vector<std::array<LineEnd, 2>> lines;
 };
 
-/// How fine lines of contact are for patches with edges of `max_edge` at most, metres: ContactLines::size divided by a
-/// power of two, so that patches of about one size follow the same lines; no more than `max_edge` and
-/// ContactLines::detail.
+/// The resolution, in meters, of lines of contact for patches with edges of at most `max_edge`. It is
+/// ContactLines::size divided by a power of two, so that patches of similar size follow the same lines. It does not
+/// exceed `max_edge` or ContactLines::detail.
 double followed_detail(const ContactLines& contacts, double max_edge);
 
-/// Every polygon with the lines of contact that matter to patches with edges of its length at most: those with a gap of
-/// less than a quarter of the detail that is followed, and of what ends there. Lines that bend have corners only as far
-/// as a hundredth of the detail shows them, and what is smaller than sixteen times that is left out. On both sides of
-/// long edges that are very close there are lines in one and three widths of the gap. Quadratic in the lines of one
-/// polygon.
+/// Every polygon with the lines of contact that matter to patches with edges of at most this length. A line matters if
+/// its gap is less than a quarter of the followed detail. Bent lines are simplified to a hundredth of the detail; lines
+/// smaller than sixteen times that are left out. Beside long edges with a very small gap, there are lines at one and
+/// three gap widths on both sides. Quadratic in the lines of one polygon.
 std::vector<CutPolygon> cut_polygons(const Scene& scene, const LooseCorners& loose, const ContactLines& contacts,
                                      const PatchEdges& edges);
 
-/// What cut_polygons() gives, from what it gave for another edge: those without loose corners stay as they are, and
-/// where that edge had the same followed_detail() those with lines as well.
+/// The result of cut_polygons() for other edges, reusing `polygons`. Polygons without loose corners stay unchanged, and
+/// so do those with lines if followed_detail() is the same.
 std::vector<CutPolygon> cut_again(std::vector<CutPolygon> polygons, const Scene& scene, const LooseCorners& loose,
                                   const ContactLines& contacts, const PatchEdges& edges, bool same_detail);
 
-/// The outlines of polygons with lines. Where a line ends on an outline there is a corner, also of a neighbour in about
-/// the same plane that shares the edge. Those that are not needed stay empty.
+/// The outlines of polygons with lines. A line that ends on an outline adds a corner, also to a neighbor that shares
+/// the edge in about the same plane. Outlines that are not needed stay empty.
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges,
                                   std::span<const std::uint8_t> is_needed);
 std::vector<Outline> cut_outlines(const std::vector<CutPolygon>& polygons, const PatchEdges& edges);

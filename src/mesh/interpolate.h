@@ -36,11 +36,11 @@ Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fiel
 /// Root mean squares over the same patches.
 Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const FieldView& values);
 
-/// Means over the patches of `mesh` of a field that is constant on every patch of `other`, one row per patch of
-/// `other`: sum_k O_ik x_k / sum_k O_ik, where O_ik is the area in which two patches overlap. Both meshes are of the
-/// same sides of the same polygons; either may be the finer one. Where parts of patches are covered, the mean over what
-/// is exposed is average_over(share x) / average_over(share). The same bits for any number of threads. Costs about n +
-/// n' log n' + n sqrt(n') per side of a polygon.
+/// Means over the patches of `mesh` of a field that is constant on every patch of `other`. `values` has one row per
+/// patch of `other`; row i of the result is sum_k O_ik x_k / sum_k O_ik. O_ik is the area in which two patches overlap.
+/// Both meshes have the same sides of the same polygons; either may be the finer one. For partly covered patches, the
+/// mean over the exposed part is average_over(share x) / average_over(share). The result does not depend on the number
+/// of threads. Costs about n + n' log n' + n sqrt(n') per side of a polygon.
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values);
 
 /// A field that is linear on every patch.
@@ -49,13 +49,13 @@ struct SlopedField {
   Field slopes;  ///< three columns for each of `values`: the gradient, per meter
 };
 
-/// A field with the slopes that the means of the patches around show, by least squares; patches around are those of the
-/// same polygon side that share a corner. No corner gets a value beyond those of the patches around (Barth and
-/// Jespersen, AIAA 89-0366): what is not negative stays so.
+/// A field with slopes by least squares from the means of the surrounding patches: those on the same polygon side that
+/// share a corner. No corner exceeds the range of these patches (Barth and Jespersen, AIAA 89-0366), so a non-negative
+/// field stays non-negative.
 SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values);
 
-/// The same means of a field that is linear on every patch of `other`. So they do not depend on how the patches of both
-/// meshes lie to each other, but by the field's curvature.
+/// The same for a field that is linear on every patch of `other`. The means depend on the relative position of both
+/// meshes only through the curvature of the field.
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field);
 
 /// Weight of each patch (row) at each of its corners (column); the fourth of a triangle is not used.

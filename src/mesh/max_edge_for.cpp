@@ -52,7 +52,7 @@ class Numbers {
   std::map<double, double> known_;
 };
 
-// Edges between which that for some number of patches lies, metres.
+// Bounds on the edge length that gives a number of patches, in meters.
 struct Bracket {
   double too_long;
   double few;            // patches
@@ -113,8 +113,9 @@ class EdgeSearch::PatchNumber {
 
   double least() { return numbers.with_edge(longest_); }
 
-  // The edge for a number of patches, within `close_enough` of what is wanted above the least: where that is nearly
-  // all, a small part of all tells nothing of how finely the large faces are cut.
+  // The edge for a number of patches. `close_enough` is the tolerance relative to the number above the least. If the
+  // least is nearly all of them, a tolerance relative to the total would not control the size of patches on large
+  // faces.
   double edge_for(Numbers& counts, std::size_t patches, double close_enough) const {
     const double wanted = possible(patches);
     // 1. No number below that of the uncut scene.
@@ -201,10 +202,10 @@ class EdgeSearch::PatchNumber {
   const KeptSides& sides_;
   const ContactLines& contacts_;
   LooseCorners loose_;
-  std::optional<double> detail_;                           // of the lines that the polygons below follow, metres
+  std::optional<double> detail_;                           // of the lines that the polygons below follow, meters
   std::vector<CutPolygon> polygons_;                       // with these lines
   std::vector<std::optional<std::vector<double>>> whole_;  // longest edges of the patches of polygons that stay whole
-  double longest_;                                         // metres: that leaves the scene uncut
+  double longest_;                                         // meters: leaves the scene uncut
 };
 
 std::size_t number_of_patches(const Scene& scene, const KeptSides& sides, double max_edge,

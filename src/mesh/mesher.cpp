@@ -283,10 +283,12 @@ std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const 
 }
 
 // Numbers the boundary points of this side of the kept polygons (kept[p] != 0). Two polygons share the points of a
-// common edge when they have one material, traverse the edge in opposite directions, are the only two of that material
-// there, their normals differ by less than 30 degrees, and no third polygon that has the same edge, from end to
-// end, rises from it on this side of them; the corners of such polygons are shared too. All other points are separate.
-// Positions are compared bit by bit.
+// common edge if all of these hold:
+// - they have the same material and traverse the edge in opposite directions;
+// - no other polygon of that material has the edge;
+// - their normals differ by less than 30 degrees;
+// - no third polygon with the same edge, from end to end, rises from it on this side.
+// They share the corners too. All other points are separate. Positions are compared bit by bit.
 BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
                                  std::span<const std::uint8_t> kept) {
   BoundaryVertices result{.points = {}, .of_polygon = std::vector<std::vector<std::uint32_t>>(outlines.size())};
@@ -414,7 +416,7 @@ void fill_slot(PatchMesh& mesh, const Scene& scene, const MeshedPieces& pieces, 
 }  // namespace
 
 void require_so_many_patches(const Scene& scene, const KeptSides& sides, const PatchEdges& edges) {
-  // Patches of a polygon are in the mean no larger than the square of its longest edge.
+  // On average, patches of a polygon are no larger than the square of its longest edge.
   double at_least = bounds(scene).diagonal().norm() / edges.max_edge;
   double sum = 0;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {

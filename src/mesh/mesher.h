@@ -18,19 +18,20 @@ inline constexpr double max_patches = 0x1p31;
 /// \throws MemoryError when more than 2^31 patches would be needed.
 void require_so_many_patches(const Scene& scene, const KeptSides& sides, const PatchEdges& edges);
 
-/// Subdivides the kept sides of every polygon into patches no edge of which is longer than `edges` says.
+/// Subdivides the kept sides of every polygon into patches. No edge of a patch is longer than `edges` allows.
 ///
-/// An edge is cut into ceil(length / max_edge) equal parts, so neighbors of one longest edge that share an edge share
-/// its points. Where an outline that no third face meets is finer than that it becomes coarser first, see
-/// coarse_outline(). Convex quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals,
-/// triangles with three equal counts a grid of triangles; every other polygon a Delaunay mesh of triangles: an
-/// equilateral lattice inside, split at the longest inner edge until all are short enough. Patches of one polygon side
-/// are numbered consecutively; vertices are shared between neighbours of one material whose normals differ by less than
-/// 30 degrees and between which no wall stands, and between those only. Patches end at lines of contact, see
-/// cut_polygons(), and share no vertices over them: a polygon with such lines becomes a Delaunay mesh around them. Both
-/// sides of a polygon have their own vertices. With graded edges patches of grids of quadrilaterals shrink towards
-/// edges where lit faces meet, see graded(): there are as many, and edges in the middle are longer than `max_edge` by
-/// up to pi / 2. \throws MemoryError when more than 2^31 patches would be needed.
+/// An edge is cut into ceil(length / max_edge) equal parts, so neighbors with the same limit share its points. An
+/// outline that is finer than that and meets no third face is first made coarser, see coarse_outline(). Convex
+/// quadrilaterals with equal counts on opposite edges become a grid of quadrilaterals. Triangles with three equal
+/// counts become a grid of triangles. Every other polygon becomes a Delaunay mesh of triangles: an equilateral lattice
+/// inside, split at the longest inner edge until all are short enough.
+///
+/// Patches of one polygon side are numbered consecutively. Neighbors share vertices only if they have one material,
+/// their normals differ by less than 30 degrees, and no wall stands between them. Both sides of a polygon have their
+/// own vertices. Patches end at lines of contact, see cut_polygons(), and share no vertices across them; a polygon with
+/// such lines becomes a Delaunay mesh around them. With graded edges, the quadrilaterals of grids shrink towards edges
+/// where lit faces meet, see graded(). Their number stays the same; edges in the middle are longer than `max_edge` by
+/// up to a factor of pi / 2. \throws MemoryError if more than 2^31 patches would be needed.
 PatchMesh tessellate(const Scene& scene, const KeptSides& sides, const PatchEdges& edges,
                      const ContactLines& contacts = {}, bool graded_edges = false);
 
@@ -49,7 +50,7 @@ std::vector<std::size_t> left_out_corners(const Scene& scene, double max_edge);
 /// MemoryError for more than 2^31 patches.
 double max_edge_for(const Scene& scene, const KeptSides& sides, std::size_t patches, const ContactLines& contacts = {});
 
-/// The same for several numbers: what is found for one narrows the search for the next.
+/// Searches edges for several numbers of patches. Each result narrows the next search.
 class EdgeSearch {
  public:
   /// Keeps references to all three.
@@ -59,8 +60,8 @@ class EdgeSearch {
   EdgeSearch& operator=(const EdgeSearch&) = delete;
   double edge_for(std::size_t patches);
   double patches_with(double max_edge);
-  /// Of parents whose parts, see nest(), are so many within 5 % of what they are more than the least, or as near as the
-  /// steps allow. \throws MemoryError as max_edge_for() does.
+  /// The edge of parents for a number of parts, see nest(). The tolerance is 5 % of the number above the least, or the
+  /// steps in which it can change. \throws MemoryError like max_edge_for().
   double nested_edge_for(std::size_t patches);
   /// The parts of parents with edges of `max_edge` at most.
   double nested_patches_with(double max_edge);

@@ -31,7 +31,7 @@ Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked);
 /// Cuts every patch: patch i becomes the patches 4 i to 4 i + 3.
 PatchMesh refine(const PatchMesh& mesh);
 
-/// Patches and the larger ones they are parts of, for comparing what both give: the difference tells the error.
+/// Patches and their larger parents. The difference between the two solutions estimates the error.
 struct NestedMesh {
   PatchMesh parents;
   PatchMesh patches;
@@ -48,7 +48,7 @@ inline constexpr double any_edge = std::numeric_limits<double>::infinity();
 /// all, or of `usual_edge` if that is less, as on small faces of a model.
 NestedMesh nest(PatchMesh parents, double usual_edge = any_edge);
 
-/// Into how many parts that cuts a parent, from its longest edge and that of all.
+/// The number of parts into which nest() cuts a parent, from its longest edge and the longest of all.
 std::size_t parts_of_parent(double edge, double longest);
 
 /// A nested mesh made from another.

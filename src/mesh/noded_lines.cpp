@@ -205,8 +205,8 @@ GridLines on_grid(std::span<const FlatLine> lines, double grid) {
   return found;
 }
 
-// Where a point of the grid lies on the lines through it: on an end of one, or where two cross, if that is near.
-// Nowhere else is there anything to be cut: what is found there are lines that lie on each other but for rounding.
+// The exact position of a grid point on the lines through it: the end of a line, or a crossing, if that is near. Lines
+// that coincide up to rounding need no other cuts.
 std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std::vector<std::size_t>& through,
                                      const FlatPoint& point, double near) {
   const FlatPoint* end = nullptr;
@@ -217,7 +217,7 @@ std::optional<FlatPoint> exact_place(std::span<const FlatLine> lines, const std:
     }
   }
   if (end != nullptr) return *end;
-  // Of the two that cross at the widest angle; its sine is above 0.01.
+  // The crossing with the widest angle; its sine is above 0.01.
   double widest = 0.01;
   std::optional<FlatPoint> crossing;
   for (const std::size_t one : through) {

@@ -34,8 +34,8 @@ std::vector<std::vector<FlatPoint>> lattice_rows(std::span<const FlatPoint> poly
 /// narrow angle, within that width of them. In the order of their ends. Nothing where lines_on_grid() gives nothing.
 std::vector<FlatLine> noded_lines(std::span<const FlatLine> lines, double grid);
 
-/// The same lines, each once, with fewer corners where they bend: none is farther than `tolerance` from what it was,
-/// and what is smaller than `least_size`, with all that hangs together with it, is left out.
+/// The same lines, each once, with fewer corners where they bend. No line moves by more than `tolerance`. Connected
+/// groups smaller than `least_size` are left out.
 std::vector<FlatLine> simplified_lines(std::span<const FlatLine> lines, double grid, double tolerance,
                                        double least_size);
 

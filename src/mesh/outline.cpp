@@ -95,7 +95,7 @@ double turn_at(const Point& before, const Point& at, const Point& after) {
   return std::atan2(in.cross(out).norm(), in.dot(out));
 }
 
-// By place, those at one place by polygon.
+// Sorted by position, then by polygon.
 std::vector<Occurrence> occurrences_in(const Scene& scene, const std::vector<std::uint8_t>& has_many) {
   std::vector<Occurrence> all;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -221,8 +221,8 @@ std::vector<Point> Run::coarse() const {
   if (ends.size() == 2 && !straight) ends = evenly(2);  // one is there to be moved
   if (ends.empty() || ends.size() == points_.size()) return points_;
 
-  // Moving a corner by d between neighbours that are c apart changes the vector area by d x c / 2, so that
-  // d = 2 c x a / |c|^2 at right angles to c makes up for a lost area a. What a chord loses goes half to each end.
+  // Moving a corner by d between neighbors at a distance c changes the vector area by d x c / 2. So d = 2 c x a /
+  // |c|^2, at right angles to c, compensates a lost area a. Each end of a chord compensates half of its loss.
   std::vector<Point> result;
   for (const std::size_t end : ends) result.push_back(points_[end]);
   const std::size_t chords = ends.size() - 1;

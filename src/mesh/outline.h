@@ -43,7 +43,7 @@ struct PolygonMesh {
 /// True when a comes before b in the order of their coordinates.
 bool comes_before(const Point& a, const Point& b);
 
-/// Into how many parts an edge is cut for none to be longer than `max_edge`.
+/// The number of parts of an edge for which no part is longer than `max_edge`.
 std::uint32_t parts_of(const Point& from, const Point& to, double max_edge);
 
 Outline make_outline(std::vector<Point> corners, const Vector& normal, double max_edge);
@@ -51,7 +51,7 @@ Outline make_outline(std::vector<Point> corners, const Vector& normal, double ma
 /// True when patches become a grid of quadrilaterals: of convex ones with equal counts on opposite edges.
 bool is_quad_grid(const Outline& outline);
 
-/// Of the edge after this corner.
+/// The grading of the edge after this corner.
 Grading grading_of_edge(const Outline& outline, std::size_t edge);
 
 /// Where point `index` of 0 to `parts` lies on an edge, from 0 to 1. Parts near a graded end grow with their distance
@@ -93,14 +93,14 @@ using LooseCorners = std::vector<std::vector<LooseCorner>>;
 /// The corners of a polygon, no two consecutive ones at one place.
 std::vector<Point> outline_corners(const Scene& scene, PolygonIndex polygon);
 
-/// Loose are the corners of outlines with over 24 of them where the outline turns by at most 15 degrees and that one
-/// face alone has, or two faces between the same neighbors. Positions are compared bit by bit. O(n log n).
+/// Finds loose corners: corners of outlines with over 24 corners, where the outline turns by at most 15 degrees. They
+/// belong to one face alone, or to two faces between the same neighbors. Positions are compared bit by bit. O(n log n).
 LooseCorners find_loose_corners(const Scene& scene);
 
-/// The corners that the patches of a polygon follow. Between two corners that are kept a run of loose ones, whose edges
-/// are all shorter than `max_edge` and the face is wide, becomes a coarser one with chords that turn by at most 30
-/// degrees each. Its corners are moved so that the area on either side stays the same to rounding, and they have the
-/// same bits for both faces that share the run. All corners where the coarser outline would cross itself.
+/// The corners that the patches of a polygon follow. Runs of loose corners between two kept ones become coarser, if all
+/// edges are shorter than `max_edge` and the face is wide. The chords turn by at most 30 degrees each. Corners are
+/// moved to keep the area on either side, up to rounding. Both faces that share the run get the same bits. Returns all
+/// corners if the coarser outline would cross itself.
 std::vector<Point> coarse_outline(const Scene& scene, const LooseCorners& loose, PolygonIndex polygon, double max_edge);
 
 }  // namespace patchlight

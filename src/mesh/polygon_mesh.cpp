@@ -10,7 +10,7 @@
 namespace patchlight {
 namespace {
 
-// Of the lattice to the boundary, in spacings: of 0.3 to 0.7, the one with the fewest patches.
+// Distance from the lattice to the boundary, in spacings. This value gives the fewest patches in the range 0.3 to 0.7.
 constexpr double lattice_margin = 0.6;
 
 OutlinePlane plane_of(const Outline& outline) {

@@ -36,7 +36,7 @@ double dot(const Workbench::Point& a, const Workbench::Point& b, const Workbench
   return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]);
 }
 
-// Of a quadrilateral, counter-clockwise.
+// The corners of a quadrilateral, counterclockwise.
 using Corners = std::array<Workbench::Point, 4>;
 
 // Does it turn left at its first and third corner, by more than this share of the square between the others?
@@ -101,7 +101,7 @@ class Triangulation {
 // A place as a key: ends of lines have the same bits as corners of the outline and ends of other lines.
 std::array<double, 2> place_of(const FlatPoint& point) { return {point.x(), point.y()}; }
 
-// By their corners, so that their order does not tell which edges were flipped on the way.
+// Sorts patches by their corners, so that their order does not depend on the sequence of flipped edges.
 void put_in_order(std::vector<std::array<std::uint32_t, 4>>& patches) {
   for (auto& patch : patches) {
     const auto end = patch.begin() + (patch[2] == patch[3] ? 3 : 4);
@@ -394,7 +394,7 @@ std::vector<EdgeHandle> Triangulation::edges_across(VertexHandle from, VertexHan
   return {};
 }
 
-// Flips what is in the way until the edge is there: Sloan 1993, section 3.
+// Flips crossing edges until the edge exists: Sloan 1993, section 3.
 bool Triangulation::make_edge(VertexHandle from, VertexHandle to) {
   if (const HalfedgeHandle there = mesh_.find_halfedge(from, to); there.is_valid()) {
     if (!mesh_.is_boundary(mesh_.edge_handle(there))) mark_as_line(mesh_.edge_handle(there));

@@ -55,8 +55,8 @@ struct Look {
   double exposure = 1;  ///< see Picture::exposure
 };
 
-/// How the model of a page is exposed: as `exposure` says. By day, where enclosed patches and others are both lit, also
-/// for those of the two that it is not made for. The first is that of `exposure`.
+/// The exposures of a page's model. The first is `exposure`. If both enclosed and other patches are lit by day, a
+/// second exposure serves the part for which the first is not made.
 std::vector<Look> looks_of(const SolvedSurface& surface, double exposure);
 
 /// Per look its name, exposure and colors per vertex of at most `most_faces` faces (drawn_faces()), and where there is

@@ -74,7 +74,7 @@ Json sensor_maps(const Scene& scene, const Readings& readings) {
   return maps;
 }
 
-// Corners as multiples of the bounds' sizes over 65535: .15 mm in a room of ten meters.
+// Corners as multiples of the bounds' sizes over 65535: 0.15 mm in a room of ten meters.
 Json positions_part(const std::vector<Point>& vertices) {
   Box box;
   for (const Point& vertex : vertices) box.extend(vertex);

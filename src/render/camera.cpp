@@ -133,7 +133,8 @@ Camera view_from_corner(const Surroundings& around, Eigen::Vector2d corner) {
   return camera;
 }
 
-// Of a flat model, whose sides show nothing: from above one corner, so far that the picture holds the model.
+// The view of a flat model whose sides show nothing: from above one corner, at a distance where the picture holds the
+// model.
 Camera view_from_above(const Surroundings& around) {
   const double half_angle = outside_field_of_view * std::numbers::pi / 360;
   Vector direction = Vector::Ones();

@@ -29,9 +29,9 @@ double tent(double u);
 /// The upward direction of a picture: `up`, or `north`, as in plans, where the camera looks along `up`.
 Vector picture_up(const Camera& camera, const Vector& up, const Vector& north);
 
-/// A view that shows most of the kept sides. Where an upright side of the scene's bounds is open, from before it
-/// through the opening; otherwise from a corner of the bounds, inside, at eye height, to the opposite one. Of several
-/// such views the one that shows the most different polygons over the widest part of the picture.
+/// A view that shows most of the kept sides. If an upright side of the scene's bounds is open, the camera stands before
+/// it and looks in. Otherwise it looks from a corner of the bounds, inside, at eye height, to the opposite one. Returns
+/// the view with the most different polygons over the widest part of the picture.
 Camera default_camera(const Scene& scene, const KeptSides& sides, const Occluder& occluder);
 
 /// True when most of an upright side of the bounds is a hole with kept sides in its depth.

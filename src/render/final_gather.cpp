@@ -54,11 +54,11 @@ struct PictureView {
   const Lens& lens;
 };
 
-// Records are wanted at every so many pixels, first far from each other.
+// Strides, in pixels, at which records are placed, from coarse to fine.
 constexpr int first_stride = 32;
 constexpr int last_stride = 2;
 
-// A record serves at least so many pixels around it.
+// The least number of pixels around a record that it serves.
 constexpr double least_pixels = 3;
 
 struct Candidate {
@@ -93,7 +93,7 @@ std::vector<Candidate> not_served(std::vector<Candidate> candidates, const Solve
   return candidates;
 }
 
-// Of several that would serve the same pixels the first.
+// The first of several candidates that would serve the same pixels.
 std::vector<Candidate> apart(const std::vector<Candidate>& all, const SolvedLight& solved) {
   // Only where these would serve counts.
   const Eigen::Index bands = solved.luminous_weights.size();
@@ -400,7 +400,7 @@ double PixelSamples::variance() const {
   const double size = room_ / 4.0;
   double sum = 0;
   for (const double quarter : quarters_) sum += std::pow(quarter / size - mean(), 2);
-  // Of the mean of a quarter sum / 3, of that of all a fourth of it
+  // The variance of the mean of a quarter is sum / 3; that of the mean of all is a fourth of it.
   return sum / 12 * count_;
 }
 
@@ -450,7 +450,7 @@ GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radianc
       static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), 4);
   gather.take_samples(first, part_of_stage(observer, 0.4, 0.6));
   gather.see_layers();
-  // 3. More where they differ; in two steps, as few samples show little of how many are wanted
+  // 3. More samples where they differ, in two steps, as few samples give a poor estimate of the number needed
   bool unfinished = false;
   try {
     gather.take_samples(gather.wanted(16), part_of_stage(observer, 0.6, 0.75));

@@ -16,19 +16,19 @@
 
 namespace patchlight {
 
-/// The luminances of a pixel's samples, in order: sums over four quarters of them, so that the variance shows the gain
-/// by the stratification of each quarter.
+/// The luminances of a pixel's samples, in order, as sums over their four quarters. So the variance includes the gain
+/// from the stratification of each quarter.
 class PixelSamples {
  public:
-  /// Makes room for `count` samples in all, a power of two from 4 up, of which those there are the first.
+  /// Reserves `count` samples in total, a power of two from 4 up. Existing samples are the first of them.
   void extend(std::uint32_t count);
   void add(double luminance);
 
   std::uint32_t count() const { return count_; }  ///< of those added
   double mean() const;
 
-  /// Of one sample, if there were nothing to gain from several: the variance of the mean times their number. All that
-  /// extend() made room for must be there.
+  /// The variance of one sample: the variance of the mean times the number of samples, without the gain from
+  /// stratification. All samples that extend() reserved must be present.
   double variance() const;
 
  private:
@@ -36,17 +36,17 @@ class PixelSamples {
   std::array<double, 4> quarters_{};
 };
 
-/// The variances of the means of pixels, row by row of `width`: from their own and those around, each relative to its
-/// own reference_luminances(), as that of few samples is small by chance. Beside a lamp a dark pixel takes no share of
-/// the lamp's variance that its own luminance does not call for.
+/// The variances of the means of pixels, row by row of `width`. They pool a pixel with its neighbors, each relative to
+/// its own reference_luminances(), as the variance of few samples may be too small by chance. So a dark pixel beside a
+/// lamp does not take over the variance of the lamp.
 Eigen::VectorXd pooled_variances(const std::vector<PixelSamples>& pixels, int width);
 
 /// The root mean square over the pixels of their standard errors, each relative to its reference_luminances(); 0 where
 /// no pixel is lit.
 double mean_relative_error(const std::vector<PixelSamples>& pixels, const Eigen::VectorXd& errors);
 
-/// How many samples each pixel should have, so that its mean has the wanted standard error, relative to its
-/// reference_luminances(): powers of two, up to `most`; at least as many as are there.
+/// The number of samples of each pixel for which its mean has the requested standard error, relative to its
+/// reference_luminances(). Powers of two, up to `most`, not below the present number.
 std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixels, int width, double error,
                                           std::uint32_t most);
 
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> wanted_samples(const std::vector<PixelSamples>& pixel
 struct FinalGatherOptions {
   int width = 800;
   int height = 800;
-  double error = 0.01;    ///< wanted standard error of a pixel's luminance, PictureOptions::error
+  double error = 0.01;    ///< requested standard error of a pixel's luminance, PictureOptions::error
   int most_samples = 64;  ///< of a pixel, a power of two and at least 4
   HemisphereOptions hemisphere = {};
   std::uint32_t seed = 1;
@@ -68,14 +68,15 @@ struct GatheredImage {
   std::optional<double> error = {};  ///< mean_relative_error() of a finished or unfinished gather; a draft has none
 };
 
-/// A picture of the light that points get, by two passes (Wallace, Cohen and Greenberg 1987): each point that the eye
-/// meets, straight, in mirrors and through clear faces, takes light of lamps, luminaires, sun and sky by shadow rays,
-/// and all other light from the solution, gathered at records between which it is interpolated (IrradianceCache). The
-/// light that mirrors and clear faces scatter themselves is `radiance`, that of the smoothed solution.
+/// A picture of the light that points receive, in two passes (Wallace, Cohen and Greenberg 1987). For each visible
+/// point, directly, in mirrors and through clear faces, shadow rays compute the light of lamps, luminaires, sun and
+/// sky. All other light comes from the solution: it is gathered at records and interpolated between them
+/// (IrradianceCache). `radiance`, from the smoothed solution, gives the light that mirrors and clear faces scatter
+/// themselves.
 ///
-/// Pixels take stratified samples under a tent filter: first 4 each, then as many as the wanted error asks for. Sets
-/// Image::error from how far pairs of samples differ, in a pixel and those around, and from how records differ. Same
-/// bits for any number of threads. \throws Cancelled as long as there is no picture.
+/// Pixels take stratified samples under a tent filter: first 4 each, then as many as the requested error needs.
+/// Image::error comes from the differences between pairs of samples, in a pixel and its neighbors, and between records.
+/// The result does not depend on the number of threads. \throws Cancelled before there is a picture.
 GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
                            const FinalGatherOptions& options = {}, const Observer& observer = {});
 

@@ -218,7 +218,7 @@ std::optional<CachedIrradiance> IrradianceCache::at(const Point& point, const Ve
     second += weight * value * value;
   });
   if (weights == 0) return std::nullopt;
-  // By the scatter of the records, with as many degrees of freedom as records of equal weight would have.
+  // The error from the scatter of the records, with the degrees of freedom of as many records of equal weight.
   const double mean = first / weights;
   const double scatter = std::max(0.0, second / weights - mean * mean);
   const double freedom = std::max(0.5, weights * weights / squares - 1);

@@ -39,7 +39,7 @@ class Hemisphere {
   /// variance by the differences of neighbors in a ring.
   HemisphereIrradiance irradiance(const FieldView& radiosity, std::span<const double> distances) const;
 
-  /// Of so many distances, meters; infinite when all are.
+  /// The harmonic mean of these distances, meters; infinite if all are.
   double harmonic_mean(std::span<const double> distances) const;
 
  private:

@@ -22,10 +22,10 @@ Vector across(const Vector& vector, const Vector& axis) { return (vector - vecto
 // So many lamps or luminaires get rays each; of more, some are chosen for each point.
 constexpr std::size_t few_lights = 4;
 
-// A lamp that is chosen gets so many, each of which says how the other counts.
+// Rays to a chosen lamp; each half gives the control coefficient of the other.
 constexpr std::uint32_t rays_of_lamp = 2;
 
-// Rays to a lamp are in two halves, by turns, whose random numbers have nothing to do with each other.
+// Rays to a lamp form two halves, in turns, with independent random numbers.
 constexpr std::uint32_t halves = 2;
 
 // A ray to a place on a light. `light` times the share that gets through arrives.
@@ -169,13 +169,13 @@ void add_luminaires(Rays& to, const Lights& lights, std::size_t index, const Lit
     add_arrival(to, index, point.at, arrivals[chosen.index], sum / (weights[chosen.index] * rays));
 }
 
-// E F V of a lamp, from the rays i = 1 ... n to it with kernels g_i and the shares V_i that get through:
+// E F V of a lamp, from the rays i = 1 ... n to it with kernels g_i and the transmitted shares V_i:
 //
-//   E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i the mean V_j of the other half, of rays with g_j > 0; 1 if none.
+//  E (1/n) sum_i (g_i V_i - c_i (g_i - F)),   c_i the mean V_j of the other half, of rays with g_j > 0; 1 if none.
 //
-// F, the form factor without shadows, is the mean of g: a control variate whose coefficient is independent of the ray
-// keeps the mean, and leaves no variance where the lamp is seen as a whole, or not at all and each half has a ray above
-// the horizon. Rays of one half are spread evenly, and so depend on each other.
+// F, the form factor without shadows, is the mean of g. This is a control variate: as the coefficient is independent of
+// the ray, the estimate stays unbiased. It has no variance where the whole lamp is visible, or none of it while each
+// half has a ray above the horizon. Rays of one half are stratified, and so depend on each other.
 double lamp_irradiance(const LampRays& rays, const Field& through, std::span<const double> kernels, Eigen::Index band) {
   const auto n = static_cast<Eigen::Index>(rays.count);
   const auto shares = through.col(band).segment(static_cast<Eigen::Index>(rays.first), n);
@@ -266,7 +266,7 @@ const Target& SkySampler::chosen(std::size_t index, double& u) const {
   return targets_[k];
 }
 
-// Of the rays to openings, 1/sr.
+// The probability density of the rays to openings, 1/sr.
 double SkySampler::density(std::size_t index, const Vector& direction) const {
   double sum = 0;
   for (std::size_t k = begin_[index]; k < begin_[index + 1]; ++k) {

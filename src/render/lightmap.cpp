@@ -149,8 +149,8 @@ void Neighbours::lit_by_others(std::size_t chart) {
   }
 }
 
-// The map with the light of coplanar neighbors at the texels around each chart: where another chart goes on in its
-// plane, and no wall stands between, both interpolate the same at their common edge. Of a map with padding.
+// The map with the light of coplanar neighbors at the texels around each chart. Where another chart continues in its
+// plane, and no wall stands between, both interpolate the same values at their common edge. Needs a map with padding.
 Lightmap with_neighbours(Lightmap map, const SolvedLight& solved, const PatchLookup& lookup) {
   const std::size_t charts = map.charts.size();
   Neighbours neighbours(std::move(map), solved, lookup);
@@ -160,8 +160,8 @@ Lightmap with_neighbours(Lightmap map, const SolvedLight& solved, const PatchLoo
 
 constexpr int bake_block_edge = 16;  // texels that are baked at once
 
-// Places on a texel are the middles of its parts, so many along each edge, in an order in which each four that follow
-// one another lie in all rows and columns and around the texel's middle.
+// Samples of a texel are the middles of its parts. Each four consecutive samples cover all rows and columns and
+// surround the texel's middle.
 constexpr int parts_per_edge = 4;
 constexpr std::array<int, 16> columns_of_parts = {1, 3, 0, 2, 2, 0, 3, 1, 0, 2, 1, 3, 3, 1, 2, 0};
 constexpr std::array<int, 16> rows_of_parts = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};

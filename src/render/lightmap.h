@@ -34,18 +34,17 @@ struct PackedCharts {
   double texel = 0;  ///< meters
 };
 
-/// In the smallest square for texels of this size, or of the smallest size for which they fit into the largest map.
-/// Without a size with the smallest texels for which they fit into 256 x 256 texels, or, where there are so many charts
-/// that padding would take half of it, into the next larger square.
-/// \throws InputError when they fit into no map.
+/// Packs charts into the smallest square for texels of this size, or of the smallest size for which they fit into the
+/// largest map. Without a size, takes the smallest texels for which they fit into 256 x 256 texels. With so many charts
+/// that padding would take half of that, it takes the next larger square. \throws InputError if they fit into no map.
 PackedCharts packed_charts(const std::vector<LightmapChart>& charts, const std::optional<double>& texel);
 
-/// The map with light at so many texels around each chart, and around its holes. Beside a known texel the light goes on
-/// linearly from it and the one behind it, within 0 and twice its light, so that interpolation at the edge of a chart
-/// is right; farther out it is the mean of the texels beside.
+/// The map with light at this many texels around each chart, and around its holes. Beside a known texel, light is
+/// extrapolated linearly, within 0 and twice its light, so that interpolation at the edge of a chart is correct.
+/// Farther out it is the mean of the adjacent texels.
 Lightmap with_padding(Lightmap map, int texels);
 
-/// How the light at texels is found.
+/// Settings for the light at texels.
 struct BakeOptions {
   int rays_to_lights = 4;                        ///< from each of sixteen places of a texel
   int gathers = 4;                               ///< so many of these places at which other light is gathered
@@ -53,9 +52,9 @@ struct BakeOptions {
   std::uint32_t seed = 1;
 };
 
-/// Bakes the light at the texels of charts: straight from lights by shadow rays, and reflected light by a final gather
-/// into the solution, as in pictures. `sent_besides` is the light of each patch that does not follow from the
-/// irradiance on its front: its exitance and the light through a sheet, W/m^2. Same bits for any number of threads.
+/// Bakes the light at the texels of charts: direct light by shadow rays, and reflected light by a final gather into the
+/// solution, as in pictures. `sent_besides` is the light of each patch that does not depend on the irradiance on its
+/// front: its exitance and the light through a sheet, W/m^2. The result does not depend on the number of threads.
 /// \throws Cancelled.
 Lightmap bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options,
               const Observer& observer = {});

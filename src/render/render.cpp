@@ -118,9 +118,9 @@ struct PixelRays {
   std::vector<Eigen::Index> pixels;  // one for each ray
 };
 
-// The rays of a tile, pixel by pixel. Inside a pixel n^2 rays, one in each cell of an n x n grid and, in the canonical
-// arrangement of Chiu, Shirley and Wang 1994 (Multi-Jittered Sampling), one in each of n^2 columns and rows: an upright
-// edge is resolved in n^2 steps.
+// The rays of a tile, pixel by pixel. A pixel has n^2 rays, one in each cell of an n x n grid. In the canonical
+// arrangement of Chiu, Shirley and Wang 1994 (Multi-Jittered Sampling), there is also one in each of n^2 columns and
+// rows. So n^2 steps resolve an upright edge.
 PixelRays camera_rays(const Lens& lens, const RenderOptions& options, const PixelTile& tile) {
   const int n = options.rays_per_pixel_edge;
   PixelRays all;
@@ -207,7 +207,7 @@ Eigen::Array<double, 1, Eigen::Dynamic> value_at(const PatchMesh& mesh, const Sm
   const bool divided = (field.weights.row(patch).head(mesh.corner_points(patch).count) == 0).any();
   if (!divided) return interpolate(mesh, field.at_vertices, patch, weights);
 
-  // Of the corners that this point cannot see, none counts; if it sees none at all, all do.
+  // Only corners that this point sees count; if it sees none, all count.
   const auto seen = corners_seen(mesh, occluder, patch, point);
   double total = 0;
   for (std::size_t k = 0; k < 4; ++k) total += seen[k] * weights[k];

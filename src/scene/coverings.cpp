@@ -257,7 +257,7 @@ struct HoleSearch {
   double width;           // meters; narrower pieces are left out
   std::size_t tests = 0;  // done so far, of pieces and of corners
 
-  // Of these faces, and of others as near.
+  // The corners of these faces, and those of other faces near them in their plane.
   std::vector<Point> corners_in_plane(const std::vector<PolygonIndex>& faces, const Vector& normal) {
     Box box;
     std::vector<Point> corners;
@@ -272,7 +272,7 @@ struct HoleSearch {
     for (const Point& vertex : scene.vertices) {
       if (std::abs(normal.dot(vertex) - offset) <= width && around.contains(vertex)) corners.push_back(vertex);
     }
-    tests += scene.vertices.size() / 8;  // a test takes as long as 8 vertices
+    tests += scene.vertices.size() / 8;  // a test has the cost of 8 vertices
     return corners;
   }
 
@@ -356,11 +356,11 @@ Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& covering
   add(DiagnosticCode::covered_lamp, std::move(lamps),
       " in part under a smaller one in the same plane, or an equal one before it, and no light comes from there");
   add(DiagnosticCode::overlapping_faces, std::move(faces),
-      " in part under another in the same plane; where they overlap the smaller one is seen, of equal ones the first, "
-      "and no error bar has what that changes");
+      " in part under another in the same plane; where they overlap, the smaller one is visible, or the first of equal "
+      "ones. Error bars do not include the effect of this choice");
   add(DiagnosticCode::overlapping_faces, std::move(of_solids),
-      " against a larger one that is seen from both sides, with a solid behind, which is taken to stand before it and "
-      "not to be seen from beyond; where a solid is let into a face, that has to be cut out there");
+      " against a larger one that is visible from both sides, with a solid behind it. patchlight hides the solid from "
+      "the other side. If the solid is recessed into the larger face, cut the face out there");
   return problems;
 }
 

@@ -23,12 +23,14 @@ struct Coverings {
   bool lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const;
 };
 
-/// Of two polygons within in_plane_tolerance of one plane the smaller lies over the larger, of equal ones the first in
-/// the scene over the later one. A clear one lies over smaller opaque ones that cover it together, the pieces of a wall
-/// on which it is drawn. A larger one with both sides kept lies over the outer side of a closed solid, which stands
-/// against it: from beyond a wall without thickness no desk is seen. So geometry alone decides, with one exception: the
-/// side of a solid that emits lies over the larger one, as that of a lamp which is let into a ceiling. Only kept sides
-/// cover or are covered. Expected O(n log n) for n polygons.
+/// Finds which polygons lie over others, among pairs within in_plane_tolerance of one plane. Geometry decides:
+/// - The smaller polygon lies over the larger; of equal ones, the first one in the scene;
+/// - A clear polygon lies over smaller opaque ones that cover it together, e.g. pieces of a wall on which it is drawn;
+/// - A larger polygon with both sides kept lies over the outer side of a closed solid that stands against it: a desk is
+///   not visible through a wall without thickness.
+/// - The exception is a side of a solid that emits. It lies over the larger polygon, e.g. a lamp recessed into a
+///   ceiling.
+/// Only kept sides cover or are covered. Expected O(n log n) for n polygons.
 Coverings find_coverings(const Scene& scene, const KeptSides& kept);
 
 /// DiagnosticCode::overlapping_faces with the polygons that are covered in part, and DiagnosticCode::covered_lamp with
@@ -41,11 +43,11 @@ struct Hole {
   std::vector<std::vector<Point>> pieces;  ///< convex, counter-clockwise around one normal of the plane
 };
 
-/// Parts of the planes of a scene's faces that none of the faces in that plane fills, though they lie within the convex
-/// hull of these and of corners of other faces near by that lie in the plane: holes in walls, doorways, slits between a
-/// wall and the ceiling above it; but also the places beside an L-shaped floor. Pieces narrower than weld_distance()
-/// are left out. Cuts the largest faces first, for some tenths of a second at most; of planes with very many faces
-/// nothing is found. O(n log n) for n polygons, expected.
+/// Finds holes between faces: parts of a face's plane that no face in that plane fills. They lie within the convex hull
+/// of these faces and of corners of nearby faces in the plane. Examples are holes in walls, doorways, slits between a
+/// wall and the ceiling, but also the places beside an L-shaped floor. Pieces narrower than weld_distance() are left
+/// out. Cuts the largest faces first, within a limit of work; planes with very many faces have no result. Expected O(n
+/// log n) for n polygons.
 std::vector<Hole> holes_between_faces(const Scene& scene);
 
 }  // namespace patchlight

@@ -60,7 +60,7 @@ class PointsByCell {
   }
 
  private:
-  // Of the cell, or the free one where it belongs.
+  // The slot of the cell, or the free slot where it belongs.
   std::size_t slot_of(const Cell& cell) const {
     std::size_t slot = hash_of(cell) & (heads_.size() - 1);
     while (heads_[slot] != no_point && cell_at(place(heads_[slot])) != cell) slot = (slot + 1) & (heads_.size() - 1);
@@ -264,7 +264,7 @@ std::vector<std::uint32_t> used_vertices(const Scene& scene) {
 std::vector<std::uint32_t> welded(std::span<const Point> points, double distance) {
   std::vector<std::uint32_t> stands_for(points.size());
   if (points.empty()) return stands_for;
-  // Of a model whose size is near the smallest double the quotient would be infinite.
+  // If the model's size is near the smallest double, the quotient would be infinite.
   const double scale = distance > 0 ? std::min(cells_per_distance / distance, std::numeric_limits<double>::max()) : 0;
   const Vector reach = Vector::Constant(cells_per_distance);
   PointsByCell by_cell(points, scale);

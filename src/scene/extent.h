@@ -33,9 +33,9 @@ Box main_bounds(const Scene& scene);
 /// The diagonal of main_bounds() in meters, to which tolerances are relative.
 double extent_of(const Scene& scene);
 
-/// How near two vertices are to be one, in meters: weld_distance() of the main bounds, or by tenths as much less
-/// as it takes for no more than a millionth of the area, or a fifth of the faces, to be narrower than that without
-/// being slivers, a hundred thousand times as long as wide. Large polygons count as in main_bounds().
+/// The distance within which vertices are merged, in meters: weld_distance() of the main bounds, reduced by factors of
+/// ten if needed. Then faces narrower than it are at most a millionth of the area, or a fifth of all faces. Slivers, a
+/// hundred thousand times as long as wide, do not count. Large polygons count like in main_bounds().
 double weld_distance(const Scene& scene);
 
 /// The polygons with a corner outside of main_bounds(), in order.
@@ -45,8 +45,8 @@ std::vector<PolygonIndex> far_polygons(const Scene& scene);
 /// weld_distance(), so that contacts with it are unknown. Coordinates far from the origin in single precision are.
 std::vector<std::uint8_t> bent_faces(const Scene& scene);
 
-/// Rays are traced in single precision in a scene of unit extent: beyond so many extents a ray cannot be told from a
-/// parallel one, and beyond 1e18 there is none.
+/// Rays are traced in single precision in a scene of unit extent. Beyond this many extents, a ray is indistinguishable
+/// from a parallel one; beyond 1e18, there is none.
 inline constexpr double most_extents = 1e12;
 
 /// How far a position may be from the middle of a scene: most_extents of its main_bounds().

@@ -122,8 +122,8 @@ FaceTree::Node FaceTree::node_of(std::uint32_t begin, std::uint32_t end) const {
   return node;
 }
 
-// By direction first if that is asked for, down to 6 degrees, then along the axis on which the means or the farthest
-// corners spread most.
+// Splits by direction first, if requested, down to 6 degrees. Then splits along the axis with the widest spread of
+// means or of farthest corners.
 std::uint32_t FaceTree::halve(const Node& node, std::uint32_t end) {
   const auto halved_by = [&](Vector FlatFace::*place, const Box& spread) {
     Eigen::Index axis = 0;

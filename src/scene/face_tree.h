@@ -70,7 +70,7 @@ struct FlatFace {
   Point farthest;   ///< the corner farthest from there
 };
 
-/// Of a polygon with these corners.
+/// The flat face of a polygon with these corners.
 FlatFace flat_face(const std::vector<Point>& corners);
 
 /// The box that a face has to meet, the largest area it may have, and a plane with a tolerance: any by default.
@@ -142,7 +142,7 @@ class FaceTree {
   std::vector<Node> nodes_;
 };
 
-/// Of all polygons of a scene, in order.
+/// The tree of all polygons of a scene, in order.
 FaceTree tree_of_faces(const Scene& scene, FaceOrder order = FaceOrder::by_direction);
 
 /// Per polygon 1 when a vertex of the scene lies before its front, and behind it, by more than 1e-6 of the scene's

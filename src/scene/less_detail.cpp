@@ -242,7 +242,7 @@ Frame frame_of(const Scene& scene, const std::vector<PolygonIndex>& shell) {
   return best;
 }
 
-// The corners of a box with these axes; bit 0, 1 and 2 of their number tell on which side each is.
+// The corners of a box with these axes. Bits 0, 1 and 2 of a corner's number select its side along each axis.
 std::array<Point, 8> box_corners(const Frame& frame, const Box& box) {
   std::array<Point, 8> corners;
   for (unsigned corner = 0; corner < 8; ++corner) {

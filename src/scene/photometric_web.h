@@ -47,9 +47,9 @@ struct LuminaireFrame {
   Vector zero_plane;
 };
 
-/// Candela in a direction, bilinear in the angles; 0 at vertical angles beyond the table. Symmetry as the last
-/// horizontal angle tells, IES LM-63-02 section 5.13: type C 0 degrees, the same all around; 90, every quadrant alike;
-/// 180 (or 90 to 270), both halves alike; types A and B from 0: left and right alike. O(log n) for n angles.
+/// Candela in a direction, bilinear in the angles; 0 at vertical angles beyond the table. The last horizontal angle
+/// defines the symmetry, IES LM-63-02 section 5.13. Type C: 0 degrees is rotational, 90 has equal quadrants, 180 (or 90
+/// to 270) has equal halves. Types A and B from 0: left and right are equal. O(log n) for n angles.
 double candela(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
 
 /// The factor of a tilted luminaire's candela; linear between the table's angles. 1 without a table.

@@ -24,9 +24,9 @@ class RoomBody {
   Box box_;
 };
 
-/// Per room of the scene the area of the clear faces, both sides of a pane of glass each, that have it before them or
-/// behind them, and no room on their other side, within half a meter, as panes may stand in the thick of a wall; m^2.
-/// O(openings x corners of the rooms).
+/// The window area of each room of the scene, m^2. It counts clear faces, both sides of each pane, that have the room
+/// before or behind them and no room on their other side. The distance is at most half a meter, as panes may stand in
+/// the middle of a thick wall. O(openings x corners of the rooms).
 std::vector<double> window_areas(const Scene& scene);
 
 /// The closed solid without clear faces and sheets that holds all of a scene, if there is one: no daylight gets into
@@ -39,10 +39,9 @@ std::optional<Solid> sealed_hull(const Scene& scene);
 /// something stands in it, or the scene names its rooms.
 bool is_room(const Scene& scene, const Solid& hull);
 
-/// A place for a lamp in a room: a tenth of its height under its top, over its middle, or where that lies outside, as
-/// far under the largest triangle of its ceiling that has room below; nothing where none has. Of n triangles of the
-/// room as many, the largest first, are looked at as take 1e7 tests of a triangle, half a second, and 16 at least:
-/// O(n log n).
+/// A place for a lamp in a room: a tenth of its height under its top, over its middle. If that lies outside, it is the
+/// same distance under the largest triangle of its ceiling with space below. Empty if there is none. The search tests
+/// the largest triangles first, up to 1e7 tests of a triangle, and at least 16. O(n log n) for n triangles of the room.
 std::optional<Point> place_under_ceiling(const Scene& scene, const Solid& room);
 
 }  // namespace patchlight

@@ -25,9 +25,9 @@ void check_bands(const Scene& scene) {
   if (scene.bands.empty()) return;
   const auto number = static_cast<std::size_t>(number_of_bands(scene));
   if (scene.bands.size() == number) return;
-  throw InputError(scene.file, "the scene says what " + std::to_string(scene.bands.size()) +
-                                   " bands stand for, and its materials have " + std::to_string(number) +
-                                   "; expected as many");
+  throw InputError(scene.file, "the scene defines " + std::to_string(scene.bands.size()) +
+                                   " bands, and its materials have " + std::to_string(number) +
+                                   "; expected the same number");
 }
 
 // Refuses a material for a finding, which ends with a hint, and names the setting that changes it.

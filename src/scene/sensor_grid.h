@@ -30,8 +30,8 @@ struct Floor {
 /// level.
 Floor floor_of(const std::vector<std::vector<Point>>& faces, const Vector& up);
 
-/// The floor of a body of air: its level faces with the air above them, at the height where these have most area. Of
-/// faces that enclose no air floor_of().
+/// The floor of a body of air: its level faces with the air above them, at the height with the largest area of such
+/// faces. For faces that enclose no air, floor_of().
 Floor floor_of_room(const std::vector<std::vector<Point>>& faces, const Vector& up);
 
 /// The corner points of some polygons of a scene.

@@ -55,8 +55,8 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Visit visit) {
   }
 }
 
-// A forest over the polygons: every link leads to a smaller index or to itself and says whether the two are turned
-// against each other.
+// A forest over the polygons. Every link leads to a smaller index or to itself, and stores whether the two have
+// opposite orientations.
 class Forest {
  public:
   explicit Forest(std::size_t size) : link_(size), turned_(size, 0) {

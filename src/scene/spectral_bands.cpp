@@ -71,7 +71,7 @@ Scene with_kept_sums(Scene scene) {
     if (stated.size() == 0 || (stated - material.reflectance).maxCoeff(&band) <= tolerance_of_shapes) continue;
     scene.diagnostics.push_back(
         {DiagnosticCode::lowered_reflectance,
-         "material '" + material.name + "': what it reflects and lets through is more than 1, as in " +
+         "material '" + material.name + "': reflectance and transmittance sum to more than 1, e.g. in " +
              scene.bands[static_cast<std::size_t>(band)].name + "; there it scatters " +
              rounded(material.reflectance[band], 2) + " instead of " + rounded(stated[band], 2)});
   }

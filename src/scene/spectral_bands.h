@@ -110,9 +110,9 @@ struct BandsWithError {
   double color_error = 0;  ///< CIE dE00, see colour_error()
 };
 
-/// How far bands with these edges put colors off at most, CIE dE00: of light of each lamp of the scene, which is in
-/// linear RGB, as it is, and reflected by one, two or three surfaces, seen beside a white under that lamp. Of many
-/// materials those that are most off by themselves stand for all where light is reflected more than once.
+/// The largest color error of bands with these edges, CIE dE00. It covers the light of each lamp of the scene in linear
+/// RGB, direct and after one, two or three reflections, seen beside a white under that lamp. With many materials, those
+/// with the largest errors stand for all in multiple reflections.
 double colour_error(const Scene& scene, const std::vector<double>& edges_nm);
 
 /// The fewest bands, of a series from 4 to 200, that keep colour_error() within one that is above 0; else the most.

@@ -20,7 +20,7 @@ Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
 /// The share that they reflect as mirrors do.
 Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
 
-/// Of the angle between a unit normal and a unit direction, whichever way both look.
+/// The absolute cosine of the angle between a unit normal and a unit direction.
 double cosine_between(const Vector& normal, const Vector& direction);
 
 /// The share of light that is kept, to be reflected or absorbed: 1 less the transmittance, and 1e-6 at least.
@@ -56,7 +56,7 @@ struct SpecularShares {
 /// has a reflectance of its own, 0 if it is none. Cosines are those of the angle to its normal, in [0, 1].
 class SpecularFace {
  public:
-  /// Of a polygon that is_opening(), or of which a side is_mirror().
+  /// `polygon` must be an opening, see is_opening(), or have a mirror side, see is_mirror().
   SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections = Reflections::kept);
 
   /// The share that goes straight through.

@@ -174,7 +174,7 @@ class EarClipping {
     hindered_by_[*by] = static_cast<std::uint32_t>(hindered_.size() - 1);
   }
 
-  // Of one whose neighbor was cut off. Where corners stand at one place, each looks at the neighbors of the others.
+  // Updates a corner whose neighbor was cut off. Corners at one place check the neighbors of each other.
   void look_at_neighbour(std::uint32_t corner) {
     std::uint32_t other = corner;
     do {

@@ -121,7 +121,8 @@ PatchWeights loose_weights(const TransportOperator& transport, const RadiosityPr
 
 bool are_positive(const PatchWeights& weights) { return (weights.v > 0).all() && (weights.g > 0).all(); }
 
-// The same v for all bands, from R that is as large as any of theirs: v - K v is not below what it is with that.
+// Shared weights v for all bands, from an R at least as large as the R of each band. For no band is v - K v smaller
+// than for that R.
 PatchWeights shared_weights(const TransportOperator& transport, const RadiosityProblem& problem) {
   const Eigen::Index bands = problem.exitance.cols();
   const PatchWeights brightest =

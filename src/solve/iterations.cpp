@@ -47,8 +47,8 @@ Relax relaxing(const RadiosityProblem& problem, double relaxation, Order order) 
   };
 }
 
-// Sweeps from the first patch to the last. A sweep also finds F B of what it starts from: iterate k is measured in
-// sweep k + 1.
+// Sweeps from the first patch to the last. A sweep also computes F B of its starting values, so sweep k + 1 measures
+// iterate k.
 Solution swept(Iterations iterations, const RowTransport& transport, double relaxation) {
   const RadiosityProblem& problem = iterations.problem();
   if (iterations.start(iterations.apply(problem.exitance))) return iterations.finish();
@@ -201,7 +201,7 @@ Iteration Iterations::measured(const Iterate& iterate, int number) const {
 // `irradiance` makes H_k where the observer asks for it.
 void Iterations::tell(const std::function<Field()>& irradiance) {
   if (!observer_ || solution_.stopped) return;
-  // Residuals fall by a constant factor: their logarithm tells the share of the work that is done.
+  // Residuals fall by a constant factor, so their logarithm gives the completed fraction of the work.
   const Iteration& iteration = solution_.history.back();
   const double wanted = std::log(tolerance_of(options_));
   const double residual = std::isfinite(iteration.relative_residual) ? iteration.relative_residual : 1;
@@ -214,7 +214,7 @@ void Iterations::tell(const std::function<Field()>& irradiance) {
   arrived_.resize(0, 0);
 }
 
-// What stops is not asked again whether it should.
+// Marks the run as stopped, so that the observer is not called again.
 void Iterations::stop() {
   if (!options_.keeps_unfinished || solution_.history.empty()) throw Cancelled();
   solution_.stopped = true;

@@ -11,24 +11,24 @@
 
 namespace patchlight {
 
-/// What the rows of F that have been taken so far tell about all of it: where the light of groups of patches arrives.
-/// Patches that follow each other make a group, as they mostly lie side by side; there are at most 64, so that memory
-/// stays in proportion to the patches. For display and for the order of shots: nothing here changes a solution.
+/// Estimate of F from the rows computed so far: where the light of groups of patches arrives. Consecutive patches form
+/// a group, as they are mostly neighbors. There are at most 64 groups, so memory is proportional to the number of
+/// patches. It serves the display and the order of shots; it does not change the solution.
 class CoarseTransport {
  public:
   explicit CoarseTransport(const RadiosityProblem& problem);
 
-  /// The irradiance everywhere, `arriving`, by the radiosity `shot_radiosity` of one patch; one row per patch, and one
-  /// row.
+  /// Adds the irradiance `arriving` at all patches due to the radiosity `shot_radiosity` of the patch `source`.
+  /// `arriving` has one row per patch, `shot_radiosity` has one row.
   void learn(Eigen::Index source, const Field& shot_radiosity, const Field& arriving);
 
-  /// The patch that shoots next when `waiting` is to be shot, W/m^2: the one with the most flux, summed over the bands.
-  /// Before that, each group that has any shoots once, the one with the most flux first.
+  /// The patch that shoots next, given the radiosity still to be shot, W/m^2: the one with the most flux, summed over
+  /// the bands. First, each group with such flux shoots once, in order of decreasing flux.
   Eigen::Index next_source(const Field& waiting) const;
 
-  /// The irradiance that unshot radiosity and all its reflections are going to add, one row per patch. A group's light
-  /// is taken to arrive where that of its known rows does, and evenly everywhere to the weight of one more row; as much
-  /// of that gets lost as of all light so far. 0 in bands where by this light is never lost.
+  /// The irradiance that the unshot radiosity and all its reflections will add, one row per patch. The light of a group
+  /// is distributed like that of its known rows, plus a uniform part with the weight of one more row. The lost fraction
+  /// equals that of all light so far. 0 in bands where this light is never lost.
   Field ambient(const Field& unshot) const;
 
  private:
@@ -45,22 +45,22 @@ class CoarseTransport {
 /// One step of a solver.
 struct Iterate {
   Field radiosity;   ///< B_k
-  Field irradiance;  ///< F B_k; for what shoots, the irradiance by what has been shot
+  Field irradiance;  ///< F B_k; for shooting solvers, the irradiance due to the shots so far
   Field residual;    ///< r, where ||B* - B_k||_A <= ||r||_A / (1 - kappa)
 };
 
 /// B_k with the residual E + rho o H - B_k, H = F B_k.
 Iterate iterate_of(const RadiosityProblem& problem, Field radiosity, Field irradiance);
 
-/// One that is made when it is looked at.
+/// An iterate that is computed on first use.
 using MakeIterate = std::function<Iterate()>;
 
-/// Whether residuals are computed anew from an application, or are carried along by recurrences, which drift.
+/// Whether residuals are recomputed from an application or updated by recurrences, which drift.
 enum class Residual { applied, recurred };
 
-/// What the iterations of one run have in common. The problem's exitance is the source, E + rho o H_direct; its
-/// direct_irradiance tells how much of that is no patch's own light. Applies the transport and counts, measures
-/// iterates, keeps the history, tells when to stop.
+/// The common part of the iterations of one run: applies the transport, counts applications, measures iterates, keeps
+/// the history and decides when to stop. The exitance of the problem is the source, E + rho o H_direct. Its
+/// direct_irradiance gives the part that is not emitted by patches.
 class Iterations {
  public:
   Iterations(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
@@ -77,27 +77,27 @@ class Iterations {
   /// Counts work that was done otherwise, in applications.
   void count(double applications) { work_ += applications; }
 
-  /// Lets the observer know between two iterates, at most ten times a second. \throws Cancelled, as record(), unless
+  /// Notifies the observer between two iterates, at most ten times a second. \throws Cancelled, like record(), unless
   /// SolverOptions::keeps_unfinished.
   void keep_observer();
 
-  /// Puts E into the history, with F E as it is found from the lamps. True when that is good enough.
+  /// Adds E to the history, with F E as computed from the lamps. Returns true if E is accurate enough.
   bool start(Field direct_irradiance);
-  /// Puts the next iterate into the history. True when it is good enough; one with a recurred residual is measured once
-  /// more, by an application, before that is said. `number` is the iteration's.
+  /// Adds the next iterate to the history. Returns true if it is accurate enough. Before it returns true for an iterate
+  /// with a recurred residual, it recomputes the residual by an application. `number` is the number of the iteration.
   bool record(Iterate iterate, int number, Residual residual = Residual::applied);
-  /// The same for one with a recurred residual of which ||r||_A is known, per band. The iterate is made where something
-  /// else is to be known of it, and in the end: `make` has to be good until then, or until one that is made is
+  /// The same for an iterate with a recurred residual of known norm ||r||_A, per band. `make` computes the iterate when
+  /// more than the norm is needed, and at the end. It must stay valid until then, or until another computed iterate is
   /// recorded.
   bool record(const Eigen::ArrayXd& residual_norm, MakeIterate make, int number);
-  /// What goes with the next iterate for display: Solution::ambient, and the irradiance that has arrived, where it is
-  /// not (B - E) / rho.
+  /// Sets data for the display of the next iterate: Solution::ambient, and the arrived irradiance where it differs from
+  /// (B - E) / rho.
   void show(Field ambient) { ambient_ = std::move(ambient); }
   void show_irradiance(Field arrived) { arrived_ = std::move(arrived); }
 
   const Field& direct_irradiance() const { return solution_.direct_irradiance; }
-  /// True when there is nothing more to do: the last iterate was good enough, or no further one will be better: the
-  /// residual is not finite any more, or has come down to rounding; or the observer has stopped the run.
+  /// True if the iterations are over: the last iterate is accurate enough, the residual is not finite or has reached
+  /// rounding, or the observer has stopped the run.
   bool ended() const { return solution_.converged || hopeless_ || solution_.stopped; }
   /// B = E + rho o H with the H of the last iterate.
   Solution finish();
@@ -136,8 +136,8 @@ class Iterations {
 /// Jacobi iteration B <- E + K B: iteration k adds bounce k (the Neumann series).
 Solution jacobi(Iterations iterations);
 
-/// Gauss-Seidel: every patch gathers with the newest values of the patches before it. The residual of an iterate is had
-/// from the sums of the next sweep, which costs no further application.
+/// Gauss-Seidel: every patch gathers with the newest values of the patches before it. The sums of the next sweep give
+/// the residual of an iterate, without another application.
 Solution gauss_seidel(Iterations iterations, const RowTransport& transport);
 
 /// Successive over-relaxation: Gauss-Seidel with its changes multiplied by options.relaxation, or by
@@ -151,29 +151,29 @@ Solution symmetric_gauss_seidel(Iterations iterations, const RowTransport& trans
 /// docs/theory/solvers-and-bounds.md below 1, else the spectral radius.
 Solution chebyshev(Iterations iterations);
 
-/// A relaxation factor for matrices whose spectrum is one mode with the eigenvalue `radius` < 1 far above all others:
-/// where the mode and the rest decay alike. docs/theory/solvers-and-bounds.md.
+/// The relaxation factor for a matrix with one eigenvalue `radius` < 1 far above all others: this mode and the rest
+/// decay at the same rate. docs/theory/solvers-and-bounds.md.
 double relaxation_for(double radius);
 
-// Krylov methods, all bands at once with scalars of their own. Every direction goes with its F times it, so that the
-// irradiance of the iterates, and with it their residual, is had without further applications, also at patches that
-// reflect nothing. Written here because library routines take one band at a time and hide their iterates.
+// Krylov methods, all bands at once, with separate scalars per band. F times each direction is stored, which gives the
+// irradiance and the residual of the iterates without further applications, also at patches that reflect nothing. They
+// are written here because library routines take one band at a time and hide their iterates.
 
-/// Conjugate gradients (Hestenes and Stiefel 1952) on the symmetric system (I - G) w = R^1/2 A^-1/2 S E with
-/// B = E + R^1/2 A^-1/2 w and G = R^1/2 A^-1/2 S A^-1/2 R^1/2. docs/theory/solvers-and-bounds.md.
+/// Conjugate gradients (Hestenes and Stiefel 1952) on the symmetric system (I - G) w = R^1/2 A^-1/2 S E. Here B = E +
+/// R^1/2 A^-1/2 w and G = R^1/2 A^-1/2 S A^-1/2 R^1/2. docs/theory/solvers-and-bounds.md.
 Solution cg(Iterations iterations);
 
-/// The same with the mode deflated that is constant irradiance (Saad, Yeung, Erhel and Guyomarc'h 2000, algorithm 3.6):
-/// one application more, and the largest eigenvalue no longer counts.
+/// Conjugate gradients with the constant mode deflated (Saad, Yeung, Erhel and Guyomarc'h 2000, algorithm 3.6). This
+/// costs one more application and removes the effect of the largest eigenvalue.
 Solution deflated_cg(Iterations iterations);
 
-/// GMRES with options.restart directions (Saad and Schultz 1986), minimising ||r||_A.
+/// GMRES with options.restart directions (Saad and Schultz 1986), minimizing ||r||_A.
 Solution gmres(Iterations iterations);
 
 /// BiCGSTAB (van der Vorst 1992); two applications an iteration.
 Solution bicgstab(Iterations iterations);
 
-/// A loose solution for a problem of which all patches emit 1: by conjugate gradients until no residual is above 1/2.
+/// A loose solution of a problem in which all patches emit 1, by conjugate gradients until no residual exceeds 1/2.
 struct GlowingRadiosity {
   Field radiosity;
   int applications = 0;

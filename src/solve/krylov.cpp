@@ -150,8 +150,8 @@ Solution bicgstab(Iterations iterations) {
 
 namespace {
 
-// One restart: directions v_1 ... v_m, orthonormal in sum_i A_i x_i y_i, with what they irradiate, and the Hessenberg
-// matrices of I - K in them, one per band.
+// One restart: directions v_1 ... v_m, orthonormal in sum_i A_i x_i y_i, their irradiance, and the Hessenberg matrices
+// of I - K in this basis, one per band.
 struct Arnoldi {
   std::vector<Field> v;           // radiosities
   std::vector<Field> irradiance;  // F v
@@ -168,9 +168,9 @@ Arnoldi begun(const RadiosityProblem& problem, const Field& residual, int restar
   return arnoldi;
 }
 
-// The next direction: K v_k, orthogonalised, as the rest of (I - K) v_k lies along v_k; once more where nearly all of
-// it was along the others, as then rounding leaves some of that, and twice is enough (Daniel, Gragg, Kaufman and
-// Stewart 1976).
+// The next direction: K v_k, orthogonalized, as the rest of (I - K) v_k lies along v_k. If nearly all of it lies along
+// the previous directions, it is orthogonalized once more to remove rounding. Twice is enough (Daniel, Gragg, Kaufman
+// and Stewart 1976).
 Arnoldi extended(Arnoldi arnoldi, const RadiosityProblem& problem, Field irradiance) {
   const auto k = static_cast<Eigen::Index>(arnoldi.irradiance.size());
   Field next = problem.scattering.reflect(irradiance);
@@ -242,7 +242,7 @@ Solution gmres(Iterations iterations) {
           [&arnoldi, &problem, &start, lengths = least.lengths] { return best(arnoldi, problem, start, lengths); }, k);
       continue;
     }
-    // What was recorded before refers to the directions and the start until a newer iterate replaces it.
+    // The recorded iterate refers to the directions and the start until a newer iterate replaces it.
     Iterate next = best(arnoldi, problem, start, least.lengths);
     iterations.record(next, k, Residual::recurred);
     if (iterations.ended()) break;

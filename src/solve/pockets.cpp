@@ -22,7 +22,7 @@ namespace {
 // A pocket of at most so many patches is solved by elimination.
 constexpr Eigen::Index few_patches = 512;
 
-// So many bands go through the matrix together: it is reading this that takes time.
+// Bands per pass through the matrix; reading the matrix dominates the time.
 constexpr Eigen::Index bands_at_once = 4;
 using BandRow = Eigen::Array<double, 1, bands_at_once>;
 using BandBlock = Eigen::Array<double, Eigen::Dynamic, bands_at_once, Eigen::RowMajor>;
@@ -48,7 +48,7 @@ BandBlock arriving_of(const SparseRows& form_factors, const BandBlock& x) {
   return sums;
 }
 
-// U^-1 L^-1 x, in single precision: what is dropped changes more than that. Scaled, so that no band gets lost in it.
+// U^-1 L^-1 x, in single precision, as dropped entries matter more than rounding. Scaled, so that no band underflows.
 BandBlock by_factors(const IncompleteFactors& by, const BandBlock& x) {
   using Row = Eigen::SparseMatrix<float, Eigen::RowMajor>::InnerIterator;
   const auto size = static_cast<Eigen::Index>(by.order.size());
@@ -82,7 +82,7 @@ BandRow ratio_or_zero(const BandRow& a, const BandRow& b) { return (b != 0).sele
 
 BandBlock times_each(const BandBlock& x, const BandRow& factors) { return x.rowwise() * factors; }
 
-// An iterate of up to four bands, each of which goes on until its own residual is small enough.
+// An iterate of up to four bands. Each band continues until its own residual is small enough.
 struct BandIterate {
   BandBlock found;
   BandBlock residual;
@@ -94,8 +94,7 @@ struct BandIterate {
   BandRow omega = BandRow::Ones();
 };
 
-// The next direction. Where the residual has come to be at right angles to its shadow, but for rounding, the search
-// begins anew.
+// The next direction. If the residual is orthogonal to its shadow up to rounding, the search restarts.
 void turn(BandIterate& at) {
   BandRow rho = sum_of_products(at.shadow, at.residual);
   BandRow beta = ratio_or_zero(rho, at.rho) * ratio_or_zero(at.alpha, at.omega);
@@ -135,7 +134,7 @@ BandBlock iterated(const Pocket& pocket, const BandBlock& reflectance, const Ban
   return at.found;
 }
 
-// Where more of all patches keep their light, it is the room that is white.
+// With a larger fraction of all patches, the room itself is white.
 constexpr double largest_part = 1.0 / 8;
 
 // Those of some patches that keep half of their light.
@@ -246,7 +245,7 @@ SparseRows rows_of(const Groups& groups, std::size_t group, const SparseRows& am
   return rows;
 }
 
-// Of I - F rho. Costs some applications of it for each entry of a row.
+// Incomplete factors of I - F rho. The cost equals that of some applications per entry of a row.
 IncompleteFactors incomplete_factors(const SparseRows& form_factors, const Eigen::VectorXd& reflectance) {
   SparseRows one(form_factors.rows(), form_factors.cols());
   one.setIdentity();
@@ -261,8 +260,9 @@ IncompleteFactors incomplete_factors(const SparseRows& form_factors, const Eigen
   return found;
 }
 
-// Of patches and F among them, unless their bounces are not known to a factor of two: then nothing tells how far off
-// what is followed is. From (I - F rho) bounces >= 1/2 light is reflected at most twice as often as they say.
+// The pocket of these patches, with F among them; empty if their bounces are not known within a factor of two. Then the
+// error of its solution has no bound. If (I - F rho) bounces >= 1/2, light is reflected at most twice as often as
+// `bounces` gives.
 std::optional<Pocket> pocket_of(std::vector<PatchIndex> patches, const SparseRows& form_factors,
                                 const Eigen::VectorXd& reflectance) {
   Pocket pocket;
@@ -387,7 +387,7 @@ Field PocketTransport::followed(const Pocket& pocket, const PocketSystem& system
     error = relative_errors(found);
   }
   for (Eigen::Index band = 0; band < found.cols(); ++band) {
-    // From what is not finite nothing is found.
+    // A non-finite irradiance has no solution.
     if (!irradiance.col(band).allFinite()) found.col(band).setConstant(irradiance.col(band).sum());
     if (error[band] > 0) raise_to(farthest_off_, error[band]);
   }

@@ -25,8 +25,8 @@ struct IncompleteFactors {
   std::vector<int> order;                               ///< row k of the factors is that of the matrix's row order[k]
 };
 
-/// Patches that keep light among themselves, as those of white boards 3 mm apart do: it takes hundreds of bounces to
-/// get out. Iterations over all patches hardly change what is there, and no bound on the error is found.
+/// Patches that keep light among themselves, for example white boards 3 mm apart, where light needs hundreds of bounces
+/// to leave. Iterations over all patches hardly change the light there, and give no error bound.
 struct Pocket {
   std::vector<PatchIndex> patches;  ///< in rising order; none sees one of another pocket
   SparseRows form_factors;          ///< F among them, numbered as they stand there
@@ -60,14 +60,14 @@ struct Pockets {
                                    ///< so that no light gets to them but what starts there
 };
 
-/// Half of the light of each of the patches is still among all patches after 4 bounces, and half of what starts on them
-/// is among those that this is true of after 8; `reflectance` is the highest of each patch in any band. Left out are
-/// pockets whose bounces are not found to a factor of two, as when rounding of F hides what gets out, or are more than
-/// 1e8, 1e5 of more than 512 patches. Null where nothing is left. Costs some five applications of
-/// one band; nothing where no reflectance is above .917.
+/// Finds patches for which half of the light is still among all patches after 4 bounces. Half of the light that starts
+/// on them is still among such patches after 8. `reflectance` is the highest of each patch in any band. Pockets are
+/// left out if their bounces are not known within a factor of two, e.g. when rounding of F hides the losses. They are
+/// also left out with more than 1e8 bounces, or 1e5 for more than 512 patches. Null if no pocket remains. Costs about
+/// five applications of one band; nothing if no reflectance is above 0.917.
 std::shared_ptr<const Pockets> pockets_of(const RayTransport& transport, const Eigen::VectorXd& reflectance);
 
-/// Rows of rays whose pockets are known: solve() follows light within these apart.
+/// Ray rows with known pockets: solve() treats the light within these separately.
 class RaysWithPockets : public TransportOperator {
  public:
   /// Looks for the pockets of patches with these reflectances, the highest of each in any band.
@@ -79,8 +79,8 @@ class RaysWithPockets : public TransportOperator {
   bool is_reciprocal() const override { return false; }
 
   const RayTransport& rays() const { return rays_; }
-  /// For patches that reflect so much in their highest band. Null where there are none, or one reflects more than
-  /// those that the pockets were looked for with: then light may be reflected more often than they say.
+  /// The pockets for patches with these reflectances, the highest of each in any band. Null if there are none, or if a
+  /// patch reflects more than in the search. Then light may be reflected more often than the pockets state.
   const Pockets* pockets(const Eigen::ArrayXd& reflectance) const {
     return (reflectance <= reflectance_.array()).all() ? pockets_.get() : nullptr;
   }
@@ -99,10 +99,10 @@ class RaysWithPockets : public TransportOperator {
 /// iterations of a room without pockets.
 class PocketTransport : public TransportOperator {
  public:
-  /// Refers to all three but the last. R is diagonal and has the bands of all fields; one of a single column, where
-  /// there are more, goes with the highest R of each patch in any band. `closed_are_dark` says that no light starts on
-  /// closed patches, so that H is 0 there. H_P is within `accuracy` times its highest value of each band, or what
-  /// farthest_off() says, and not finite where what arrives is not.
+  /// Keeps references to the first three arguments. R is diagonal and has the bands of all fields. A field with a
+  /// single column, if there are several bands, uses the highest R of each patch. `closed_are_dark` means that no light
+  /// starts on closed patches, so H is 0 there. H_P has an error of at most `accuracy` times its highest value in each
+  /// band, or of farthest_off(). It is not finite where the arriving light is not.
   PocketTransport(const TransportOperator& transport, const Pockets& pockets, const Scattering& scattering,
                   bool closed_are_dark, double accuracy);
 
@@ -113,8 +113,8 @@ class PocketTransport : public TransportOperator {
   /// The irradiance within pockets by what their own patches send out, (I - F_PP R)^-1 F_PP B_P, W/m^2; elsewhere 0.
   Field irradiance_within(const FieldView& radiosity) const;
 
-  /// How far off H_P may have been so far, relative to its highest value of a band: rounding may keep it from being as
-  /// near as was wanted, or the iterations end before.
+  /// The largest error of H_P so far, relative to its highest value in a band. Rounding or the limit of iterations may
+  /// keep it above the requested accuracy.
   double farthest_off() const { return farthest_off_; }
 
  private:

@@ -44,8 +44,8 @@ Scattering of_bands(const Scattering& scattering, const std::vector<Eigen::Index
 /// True when R is the same in both bands.
 bool same_in_bands(const Scattering& scattering, Eigen::Index a, Eigen::Index b);
 
-/// The square root of a diagonal R, R = R^1/2 R^1/2, with the areas that make the system symmetric: with B = E + D w, D
-/// = R^1/2 A^-1/2, and T = R^1/2 A^1/2 the equation B = E + R F B becomes (I - T F D) w = T F E, where T F D is
+/// The square root of a diagonal R, R = R^1/2 R^1/2, with the areas that make the system symmetric.
+/// Let B = E + D w, D = R^1/2 A^-1/2 and T = R^1/2 A^1/2. Then B = E + R F B becomes (I - T F D) w = T F E. T F D is
 /// symmetric.
 class SymmetricRoot {
  public:

@@ -19,7 +19,7 @@
 namespace patchlight {
 namespace {
 
-// How much a patch shoots: what is unshot, or also its share of what is still under way to it.
+// How much a patch shoots: its unshot radiosity alone, or also its share of the expected light.
 enum class Shot { unshot, overshot };
 
 // The share of even irradiance that is reflected.
@@ -28,22 +28,22 @@ Eigen::ArrayXd mean_reflectance_of(const RadiosityProblem& problem) {
   return area_sum(reflected, problem.area) / total(problem.area);
 }
 
-// Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly:
-// sum_i A_i dB_i / sum_i A_i / (1 - mean rho). Cohen et al. 1988, section 3.2. What overshooting shoots beforehand.
+// Irradiance that the unshot radiosity would add everywhere if it and all its reflections spread evenly: sum_i A_i dB_i
+// / sum_i A_i / (1 - mean rho). Overshooting shoots this light in advance. Cohen et al. 1988, section 3.2.
 Eigen::ArrayXd even_irradiance(const Field& unshot, const Eigen::VectorXd& area,
                                const Eigen::ArrayXd& mean_reflectance) {
   const Eigen::ArrayXd mean_unshot = area_sum(unshot, area) / total(area);
   return (mean_reflectance < 1).select(mean_unshot / (1 - mean_reflectance), 0.0);
 }
 
-// The lamps' light where it arrives first, the number of their patches, and what their rows tell.
+// The irradiance due to the lamps, the number of their patches, and the coarse transport from their rows.
 struct Lamps {
   Field irradiance;
   Eigen::Index patches = 0;
   CoarseTransport coarse;
 };
 
-// `iterations` is told of each row.
+// Notifies `iterations` of each row.
 Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
   const RadiosityProblem& problem = iterations.problem();
   const Field& exitance = problem.exitance;
@@ -61,13 +61,13 @@ Lamps lamps_shot(Iterations& iterations, const RowTransport& transport) {
   return lamps;
 }
 
-// How much of what is unshot is shot, per band: where overshooting has taken care of the light that spreads evenly, the
-// best factor of over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in rooms like boxes.
+// Factor on the unshot radiosity, per band. Overshooting handles the light that spreads evenly. The factor is the best
+// over-relaxation for the next eigenvalue of K (Young 1971). That of F is about 0.7 in box-shaped rooms.
 Eigen::ArrayXd over_relaxation(const Eigen::ArrayXd& mean_reflectance) {
   return 2 / (1 + (1 - (0.7 * mean_reflectance).square()).sqrt());
 }
 
-// What is shot of what is unshot and of what is expected to come.
+// The radiosity to shoot: the unshot radiosity, over-relaxed, plus the reflection of the expected light.
 Field with_expected(const Field& unshot, const RadiosityProblem& problem, const Eigen::ArrayXd& mean_reflectance) {
   Field waiting = reflect_even(problem.scattering, even_irradiance(unshot, problem.area, mean_reflectance));
   waiting += unshot.rowwise() * over_relaxation(mean_reflectance).transpose();
@@ -90,12 +90,12 @@ std::int64_t most_shots(const SolverOptions& options, Eigen::Index patches, Eige
   return std::clamp<std::int64_t>(static_cast<std::int64_t>(rows) - lamps, 0, most);
 }
 
-// Progressive refinement: the lamps shoot first, then the patch with the most unshot flux, again and again. With a
-// limit of rows, SolverOptions::max_rows, a patch of each group of CoarseTransport shoots before, so that a first
-// picture is known roughly everywhere. Cohen, Chen, Wallace and Greenberg 1988; it is Southwell relaxation of the same
-// system (Gortler, Cohen and Slusallek 1994). Overshooting (Feda and Purgathofer 1992) shoots beforehand what is
-// expected to come, and a little more than what is unshot: over-relaxation. docs/theory/progressive-refinement.md.
-// Takes single rows of the transport. An iteration's number is that of its shots.
+// Progressive refinement: the lamps shoot first, then repeatedly the patch with the most unshot flux. With a limit of
+// rows, SolverOptions::max_rows, a patch of each group of CoarseTransport shoots first, which gives a rough first
+// picture everywhere. See Cohen, Chen, Wallace and Greenberg 1988. It is Southwell relaxation of the same system
+// (Gortler, Cohen and Slusallek 1994).
+// Overshooting (Feda and Purgathofer 1992) shoots the expected light in advance, and over-relaxes the unshot radiosity.
+// docs/theory/progressive-refinement.md. Takes single rows of the transport. An iteration has the number of its shots.
 Solution progressive_refinement(Iterations iterations, const RowTransport& transport, Shot shot) {
   const RadiosityProblem& problem = iterations.problem();
   const Eigen::Index n = problem.exitance.rows();
@@ -114,11 +114,11 @@ Solution progressive_refinement(Iterations iterations, const RowTransport& trans
   for (std::int64_t shots = 1; shots <= most && !iterations.ended(); ++shots) {
     const Field overshot = shot == Shot::overshot ? with_expected(unshot, problem, mean_reflectance) : Field();
     const Field& waiting = shot == Shot::overshot ? overshot : unshot;
-    // A first picture needs to know where the light of each group of patches goes.
+    // A first picture needs the distribution of the light of each group of patches.
     const bool explores = iterations.options().max_rows.has_value();
     const Eigen::Index source = explores ? coarse.next_source(waiting) : brightest_patch(waiting, problem.area);
     const Field shot_radiosity = waiting.row(source);
-    // Nothing is left to shoot: what there is is the solution.
+    // Nothing is left to shoot: this is the solution.
     const bool is_done = (shot_radiosity == 0).all();
     if (is_done) next_record = shots;
     const auto index = static_cast<PatchIndex>(source);
@@ -189,7 +189,7 @@ void require_reciprocity(const TransportOperator& transport, Solver solver) {
                    "errors; expected gmres, bicgstab, jacobi or chebyshev");
 }
 
-// What sheets scatter depends on both sides.
+// The scattered light of a sheet depends on both of its sides.
 void require_diagonal(const Scattering& scattering, Solver solver) {
   if (scattering.is_diagonal() || !takes_diagonal(solver)) return;
   throw InputError(name_of(solver),
@@ -234,7 +234,7 @@ const Pockets* pockets_in(const TransportOperator& transport, const Scattering& 
   return may_be_known ? rays->pockets(scattering.reflectance.rowwise().maxCoeff()) : nullptr;
 }
 
-// What the patches of pockets send to each other at first arrives at them as direct irradiance does.
+// The light that patches of a pocket first send to each other arrives as direct irradiance.
 Solution solved_around(const TransportOperator& transport, const Pockets& pockets, bool closed_are_dark,
                        RadiosityProblem problem, const SolverOptions& options, const Observer& observer) {
   // Rounding leaves 1e-9 of light that is reflected thousands of times.
@@ -257,7 +257,7 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   Solution solution = solution_by(options.solver, Iterations(around, problem, options, of_all), nullptr);
   solution.irradiance += within;
   solution.direct_irradiance = by_lamps;
-  // No bound has more than what was wanted.
+  // A pocket error above the tolerance invalidates all bounds.
   if (around.farthest_off() > tolerance_of(options)) {
     solution.error.resize(0, 0);
     solution.patch_bound = no_bound;
@@ -265,8 +265,8 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   return solution;
 }
 
-// A singular system is said before any iteration: it has lamps on patches that no light leaves, all of which are closed
-// pockets where these are known. What shoots does not look at the whole transport.
+// Reports a singular system before any iteration. Such a system has lamps on patches that no light leaves; if pockets
+// are known, these patches are all closed. Shooting solvers do not check this, as they do not use the whole transport.
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
                      const Observer& observer) {
   const Pockets* const pockets = pockets_in(transport, problem.scattering);
@@ -314,7 +314,7 @@ double relative_error(const FieldView& reference, const FieldView& radiosity, co
   const Eigen::ArrayXd rounded = 1e-14 * area_norm(reference, problem.area);
   double worst = 0;
   for (Eigen::Index band = 0; band < error.size(); ++band) {
-    // 0 / 0 is 0, but for rounding: nothing is wrong where there is nothing. What is not a number is worse than any.
+    // 0 / 0 is 0 here, up to rounding. NaN is the worst band.
     const double of_band = error[band] <= rounded[band] ? 0 : error[band] / size[band];
     if (std::isnan(of_band) || of_band > worst) worst = of_band;
   }

@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-/// A solver as it takes part in a comparison.
+/// A solver in a comparison.
 struct Contestant {
   Solver solver = Solver::cg;
   Storage storage = Storage::tiles;  ///< of the form factors that it runs on; rows on demand are not closed
@@ -36,16 +36,16 @@ struct Frame {
   Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> irradiance;  ///< H_k, W/m^2; B_k = E + rho o H_k
 };
 
-/// What became of one solver.
+/// The result of one solver.
 struct SolverRun {
   Contestant contestant;
   Solution solution;
   double seconds = 0;           ///< wall time of the solver; on demand with the rows that it asked for
   double cpu_seconds = 0;       ///< the same, all threads
   double assembly_seconds = 0;  ///< wall time before it could begin: form factors and closure
-  double rate = 0;  ///< factor by which the error falls with an iteration, late in the run; for what shoots, with as
-                    ///< many shots as there are patches. Not a number with too few iterations to tell
-  std::vector<Frame> frames;  ///< some forty, more at the beginning
+  double rate = 0;  ///< factor by which the error falls in an iteration, late in the run. An iteration of shooting
+                    ///< solvers has as many shots as there are patches. NaN with too few iterations
+  std::vector<Frame> frames;  ///< about forty, more at the beginning
 };
 
 /// All solvers on one matrix.
@@ -57,13 +57,13 @@ struct Comparison {
   std::vector<SolverRun> runs;
 };
 
-/// \throws InputError when the request, or what is asked of the solvers, cannot be together; messages name the fields
-/// of the options as "compare.contestants".
+/// \throws InputError if settings of the request or of the solvers contradict each other. Messages name the options by
+/// their fields, e.g. "compare.contestants".
 void check(const Request& request, const CompareOptions& options);
 
-/// Assembles a scene once, solves it to ten thousandths of the wanted error with conjugate gradients as the reference,
-/// and lets every solver begin from the lamps until its true error, ||B_ref - B_k||_A / ||B_ref - E||_A in the worst
-/// band, is small enough. \throws InputError, MemoryError, Cancelled.
+/// Assembles a scene once and solves it with conjugate gradients to 1e-4 of the requested error, as the reference. Then
+/// runs every solver from the lamps until its true error, ||B_ref - B_k||_A / ||B_ref - E||_A in the worst band, is
+/// small enough. \throws InputError, MemoryError, Cancelled.
 Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
                    const Observer& observer = {});
 

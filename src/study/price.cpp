@@ -39,7 +39,7 @@ double order_between(Swept swept, const StudySetting& before, const StudySetting
   return unknown;
 }
 
-// Those that compete, on the front of CPU seconds, cheapest first: their errors fall.
+// The competing settings on the front of CPU time, cheapest first: their errors fall.
 std::vector<StudySetting> time_front(const Study& study) {
   std::vector<StudySetting> front;
   for (const StudySweep& sweep : study.sweeps) {
@@ -73,8 +73,8 @@ double order_beside_reference(const StudySetting& coarse, const StudySetting& fi
   return 0.5 * (low + high);
 }
 
-// By the coarsest and the finest of the last three settings that are far coarser than the reference; where fewer than
-// two are, by the last three of all, with the error of the reference in the model.
+// The order from the coarsest and the finest of the last three settings that are far coarser than the reference. With
+// fewer than two, from the last three of all, with the error of the reference in the model.
 double observed_order(const StudySweep& by_size, double reference_patches) {
   std::vector<StudySetting> far;
   for (const StudySetting& setting : by_size.settings) {
@@ -105,7 +105,7 @@ Price extrapolated(double error, const StudySweep& by_size, const StudyReference
   return price;
 }
 
-// By the sweep of patches with which it is cheapest.
+// The price by the sweep of patch sizes that makes it cheapest.
 Price extrapolated(double error, const Study& study) {
   Price cheapest{error};
   for (const StudySweep& sweep : study.sweeps) {
@@ -131,15 +131,16 @@ std::string text_of(const Price& price, PatchIndex patches) {
   const std::string seconds = without_exponent(price.cpu_seconds, 2);
   switch (price.finding) {
     case Finding::interpolated:
-      return error + " costs " + seconds + " CPU seconds here";
+      return error + " costs " + seconds + " s of CPU time here";
     case Finding::at_most:
-      return error + " costs at most " + seconds + " CPU seconds here";
+      return error + " costs at most " + seconds + " s of CPU time here";
     case Finding::extrapolated:
-      return error + " costs about " + seconds + " CPU seconds (by the observed order " + rounded(price.order, 2) + ")";
+      return error + " costs about " + seconds + " s of CPU time (by the observed order " + rounded(price.order, 2) +
+             ")";
     case Finding::not_reached:
       return error + " is not reached within " + std::to_string(patches) + " patches";
     case Finding::not_known:
-      return "what " + error + " costs is not known, as the reference itself is no better than that";
+      return "the cost of " + error + " is not known, as the error of the reference is no smaller";
   }
   return {};
 }
@@ -148,11 +149,11 @@ std::string limit_of(const ErrorParts& parts, double bar) {
   const double largest = std::max({parts.mesh, parts.form_factors, parts.solver});
   if (!(largest > 1e-6)) return "nothing limits you";
   const std::string size = " (" + in_percent(largest, 2) + " of the light at the finest setting)";
-  if (largest == parts.solver) return "what limits you is the solver's tolerance" + size;
-  if (largest == parts.form_factors) return "what limits you is the sampling of the form factors" + size;
+  if (largest == parts.solver) return "the largest error comes from the solver's tolerance" + size;
+  if (largest == parts.form_factors) return "the largest error comes from the sampling of the form factors" + size;
   const std::string known = parts.mesh > bar ? "" : ", by a reference that is itself good to " + in_percent(bar, 2);
-  return "what limits you is the size of the patches" + size + known + ", most of all on `" + parts.worst_place +
-         "`, " + in_percent(parts.worst_share, 2) + " of the squared error";
+  return "the largest error comes from the size of the patches" + size + known + ", most of all on `" +
+         parts.worst_place + "`, " + in_percent(parts.worst_share, 2) + " of the squared error";
 }
 
 }  // namespace

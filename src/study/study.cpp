@@ -41,7 +41,7 @@ Experiment experiment_for(const Scene& scene, const Request& request, int sizes,
   return {scene, request, nested_sizes(scene, request, sizes), observer};
 }
 
-// What a solution has cost; its errors are left open.
+// The cost of a solution; its errors are not set.
 StudySetting setting_of(const Simulation& simulation) {
   const Plan& plan = simulation.plan;
   StudySetting setting;
@@ -231,8 +231,8 @@ std::pair<double, std::size_t> largest_sum(const Eigen::VectorXd& squares, std::
   return {*largest, static_cast<std::size_t>(largest - sums.begin())};
 }
 
-// The parts of the finest setting's error: form factors and solver by the own errors of that setting in the sweeps of
-// samples and of tolerances, the mesh what is left of its error.
+// The parts of the finest setting's error. The sweeps of samples and of tolerances give those of form factors and
+// solver; the mesh has the remaining error.
 ErrorParts error_parts(const Scene& scene, const Simulation& finest, const Discrepancy& discrepancy,
                        const std::vector<StudySweep>& sweeps) {
   ErrorParts parts;
@@ -258,7 +258,7 @@ ErrorParts error_parts(const Scene& scene, const Simulation& finest, const Discr
   return parts;
 }
 
-// What the settings are compared with, and what is told about it.
+// The reference of all settings, and its facts for the report.
 struct ReferenceSolution {
   Reference reference;
   StudyReference facts;
@@ -362,7 +362,7 @@ Study study(const Scene& scene, const Request& request, const StudyOptions& opti
     for (StudySweep& sweep : estimator_sweeps(experiment, reference)) result.sweeps.push_back(std::move(sweep));
   }
 
-  // 3. Orders, the reference's own error, the Pareto front, and what limits the finest setting.
+  // 3. Orders, the reference's own error, the Pareto front, and the limit of the finest setting.
   const double patches = patches_of(solution.facts);
   for (StudySweep& sweep : result.sweeps) sweep = with_orders(std::move(sweep), patches);
   const StudySweep& by_size = result.sweeps[1];

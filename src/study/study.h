@@ -12,28 +12,28 @@ namespace patchlight {
 
 /// A mesh of which no edge is longer.
 struct SizedMesh {
-  double max_edge = 0;  ///< metres
+  double max_edge = 0;  ///< meters
   PatchMesh mesh;
 };
 
-/// Meshes each of which is cut from the one before, so that means over the patches of all can be taken from the last
-/// without an error of their own: where a reference's patches reach over the edge of another patch, it would be off by
-/// as much as they are large. Longest edges are halved each time, so that there are about four times the patches; what
-/// would have more than half the patches of the next one is left out.
+/// Nested meshes, each cut from the previous one, so that means over their patches are exact sums of patches of the
+/// last one. Patches of a reference that cross the edge of another patch would add an error of about their size. Each
+/// step halves the longest edges and gives about four times the patches. A mesh with more than half the patches of the
+/// next one is left out.
 struct NestedSizes {
   std::vector<SizedMesh> sizes;  ///< from coarse to fine; the last one is about what the request asks for
   SizedMesh finer;               ///< with half the edges
-  double coarsest_edge = 0;      ///< with which the scene is tessellated; metres
+  double coarsest_edge = 0;      ///< with which the scene is tessellated; meters
 };
 
 /// `sizes` sizes at most. \throws MemoryError when the finer mesh would not fit.
 NestedSizes nested_sizes(const Scene& scene, const Request& request, int sizes);
 
-/// The mesh, cut until a patch has no more than a quarter of the area of the one of `other` at its centre. Both are cut
-/// from one tessellation: so each patch lies in one of `other`.
+/// The mesh, cut until a patch has at most a quarter of the area of the patch of `other` at its center. Both are cut
+/// from one tessellation, so each patch lies in one patch of `other`.
 PatchMesh finer_than(PatchMesh mesh, const PatchMesh& other);
 
-/// What the errors of a solution are measured against.
+/// The reference for the errors of a solution.
 struct Reference {
   std::optional<Spectrum> uniform;  ///< the closed form: the radiosity of every patch, W/m^2
   PatchMesh mesh;                   ///< where there is none: a finer solution, constant on each of its patches
@@ -61,7 +61,7 @@ struct Discrepancy {
 /// linearly in a patch, so that it sees 1 - n / n_ref of the squares.
 Discrepancy discrepancy(const Simulation& simulation, const Reference& reference);
 
-/// One way of solving a scene: what it costs and how good it is. Errors are shares of the reflected light, NaN where
+/// One way of solving a scene, with its cost and its errors. Errors are fractions of the reflected light, NaN where
 /// they are not known.
 struct StudySetting {
   PatchIndex patches = 0;
@@ -74,7 +74,7 @@ struct StudySetting {
   double display_error = 0;  ///< of the field that is constant on each patch
   double own_error = 0;      ///< due to the swept quantity alone: against the same with the finest value of it
   double order = std::numeric_limits<double>::quiet_NaN();  ///< observed, from the setting before it to this one
-  bool on_time_front = false;    ///< no setting that competes is better for as many CPU seconds or fewer
+  bool on_time_front = false;    ///< no setting that competes is better in the same CPU time or less
   bool on_memory_front = false;  ///< nor for as many bytes or fewer
 };
 
@@ -84,8 +84,8 @@ StudySetting judged(const Simulation& simulation, const Reference& reference);
 /// The setting with an own error that is due to one quantity alone: against radiosities `own` on the same mesh.
 StudySetting judged(const Simulation& simulation, const Reference& reference, const FieldView& own);
 
-/// What a sweep changes. The order of a sweep is the power with which its own error falls with the edge of the patches,
-/// the reciprocal of the number of samples, and the tolerance.
+/// The quantity that a sweep changes. The order of a sweep is the power with which its own error falls: with the edge
+/// of the patches, the reciprocal of the number of samples, or the tolerance.
 enum class Swept { patch_size, samples, tolerance };
 
 /// Settings that differ in one quantity.
@@ -93,7 +93,7 @@ struct StudySweep {
   std::string name;
   Swept swept = Swept::patch_size;
   std::vector<StudySetting> settings;  ///< from coarse to fine
-  bool competes = true;                ///< its settings are for use: they take part in fronts and prices
+  bool competes = true;                ///< fronts and prices include its settings
 };
 
 /// Where the error of the finest setting comes from: three parts, which add up in quadrature.
@@ -111,12 +111,12 @@ struct StudyReference {
   PatchIndex patches = 0;
   PatchIndex uniform_patches = 0;  ///< before it was cut where adaptive meshes are finer
   int samples = 0;
-  double bar = 0;  ///< its own error, by Richardson's extrapolation from two coarser ones: what is below is not known
+  double bar = 0;  ///< its own error, by Richardson extrapolation from two coarser ones; smaller errors are unknown
   double cpu_seconds = 0;
   bool converged = true;
 };
 
-/// What accuracy costs.
+/// The cost of accuracy.
 struct Study {
   Plan plan;          ///< of the finest setting of the sweeps
   Diagnostics notes;  ///< of its run
@@ -136,12 +136,14 @@ struct StudyOptions {
 /// \throws InputError when the request cannot be studied.
 void check_for_study(const Request& request);
 
-/// Solves a scene in many ways, one quantity changed at a time from the setting that `request` asks for: patches from
-/// coarser ones up to its number, with its samples and with four times as many, samples around its number, tolerances
-/// down to its own; and the estimators of form factors on a small mesh, on which they do not compete. The reference is
-/// the closed form where there is one (a closed room with E = 1 - rho), else a solution with half the edges of the
-/// finest size and, wherever adaptive meshes are, with a quarter of their patches' area, and four times the samples.
-/// \throws InputError, MemoryError when the reference does not fit, Cancelled.
+/// Solves a scene in many ways, changing one quantity at a time from the setting of `request`:
+/// - patches from coarser ones up to its number, with its samples and with four times as many;
+/// - samples around its number;
+/// - tolerances down to its own;
+/// - the estimators of form factors on a small mesh, which do not compete.
+/// The reference is the closed form where there is one: a closed room with E = 1 - rho. Otherwise: a solution with half
+/// the edges of the finest size, a quarter of the patch area of adaptive meshes, and four times the samples.
+/// \throws InputError, Cancelled, MemoryError if the reference does not fit.
 Study study(const Scene& scene, const Request& request, const StudyOptions& options = {},
             const Observer& observer = {});
 
@@ -150,8 +152,8 @@ double seconds_of(const StudySetting& setting);
 double cpu_seconds_of(const StudySetting& setting);
 
 /// The power p with which an error falls with the edge of the patches: e1 / e2 = (h1 / h2)^p from `coarse` to `fine`.
-/// The reference has so many patches; infinitely many stand for the truth. Not a number where the errors do not fall,
-/// or where the edges of `fine` are less than four times as long as those of the reference.
+/// The reference has `reference_patches`, infinite for the exact solution. NaN if the errors do not fall, or if the
+/// edges of `fine` are less than four times as long as those of the reference.
 double order_in_edge(const StudySetting& coarse, const StudySetting& fine, double reference_patches);
 
 /// The sweep with its orders filled in.
@@ -181,9 +183,9 @@ enum class Finding {
   not_known      ///< the reference's own error is as large
 };
 
-/// What an error costs.
+/// The cost of an error.
 struct Price {
-  double error = 0;  ///< asked for
+  double error = 0;  ///< requested
   Finding finding = Finding::not_reached;
   double cpu_seconds = 0;
   double order = 0;  ///< by which it was extrapolated
@@ -192,7 +194,7 @@ struct Price {
 /// The reference's bar counts as part of every error.
 Price price_of(double error, const Study& study);
 
-/// The study in a sentence: "1 % costs 2.1 CPU seconds here, 0.3 % about 19 (...); what limits you is ...".
+/// The study in a sentence: "1 % costs 2.1 s of CPU time here, ...; the largest error comes from ...".
 std::string conclusion(const Study& study);
 
 }  // namespace patchlight

@@ -53,7 +53,7 @@ struct Drawing {
   std::uint64_t purpose = 0;
 };
 
-// Front and back of every polygon take part, and emit as ever.
+// Keeps the front and back of every polygon; emission stays unchanged.
 KeptSides all_sides(const Scene& scene, const KeptSides& kept) {
   KeptSides all;
   all.front.assign(scene.polygons.size(), 1);

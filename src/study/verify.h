@@ -53,10 +53,10 @@ Eigen::ArrayXd ratio(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b);
 /// Agreement means that a right solution would differ by so much or more with at least this probability.
 inline constexpr double least_probability = 0.01;
 
-/// A verdict says nothing where bars, or what the noise of paths leaves of the mean, are a larger share of the light.
+/// A verdict is inconclusive if bars, or the noise of the mean over the paths, exceed this fraction of the light.
 inline constexpr double widest_bar = 0.1;
 
-/// What a comparison with path tracing says.
+/// The result of a comparison with path tracing.
 enum class Verdict : std::uint8_t { agrees, disagrees, inconclusive };
 
 /// "agrees", "disagrees" or "inconclusive".
@@ -71,7 +71,7 @@ struct VerifyOptions {
   std::optional<double> relative_bar = {};  ///< of sensors, in place of the standard errors of their readings
 };
 
-/// A side without patches, with the light that paths find on it when every side takes part.
+/// A side without patches, and the light that paths find on it if every side is simulated.
 struct LeftOutSide {
   PolygonIndex polygon = 0;
   Side side = Side::front;
@@ -115,7 +115,7 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 /// Bars are per patch of the simulation and band, one standard deviation each. Chi-square and the common offset are
 /// tested for each part and family. Too good an agreement passes. A comparison that disagrees by noise is repeated
 /// once on the same rows, with 16 times as many paths, at least 8,192. Noise means: rows whose paths scatter more than
-/// a fifth of their bars give most of chi-square. Paths see the scene without the lights and colours that are skipped
+/// a fifth of their bars give most of chi-square. Paths see the scene without the lights and colors that are skipped
 /// by force; they simulate every other effect. The result does not depend on the number of threads. \throws Cancelled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});

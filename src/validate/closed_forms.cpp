@@ -78,8 +78,8 @@ double perpendicular_rectangles(double w, double h, double l) {
   return (W * atan(1 / W) + H * atan(1 / H) - sqrt(sum) * atan(1 / sqrt(sum)) + logarithms / 4) / (pi * W);
 }
 
-// The double contour integral of docs/theory/unoccluded-form-factors.md. Of the edges parallel to the shared one all
-// four pairs count, of the others those at the same end and those at opposite ends.
+// The double contour integral of docs/theory/unoccluded-form-factors.md. Among the edges parallel to the shared one,
+// all four pairs count. Among the others, those at the same end and those at opposite ends count.
 double angled_rectangles(double w, double h, double l, double angle) {
   // The square of the distance between the far edges, written so that small angles keep their digits.
   const double across = sqrt(squared(w - h) + 4 * w * h * squared(std::sin(angle / 2)));

@@ -155,7 +155,7 @@ Eigen::MatrixXd error_between_groups(const ExchangeAreas& S, const PatchMesh& me
   return sum;
 }
 
-// The front sides of the polygons take part. Throws Cancelled.
+// Uses the front sides of the polygons. Throws Cancelled.
 GroupExchange group_exchange(const Scene& scene, double max_edge, const AssemblyOptions& options,
                              const Observer& observer) {
   const Scene repaired = repair(scene);
@@ -200,8 +200,8 @@ Measured sampled_form_factor(const Scene& scene, double max_edge, std::uint32_t 
   return {mean, 4 * std::sqrt(variance) + systematic, "4 standard errors, quadrature"};
 }
 
-// What a finer mesh yields; a coarser one with edges twice as long tells how far it is from the limit, as the error at
-// least halves from one to the next.
+// The result of a finer mesh, with an error bar from a mesh with edges twice as long: the error at least halves from
+// the coarse mesh to the fine one.
 Measured refined(const Measured& coarse, const Measured& fine) {
   return {fine.value, std::abs(fine.value - coarse.value) + fine.error_bar, "refinement, " + fine.bar_from};
 }

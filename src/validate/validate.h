@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-/// What a case yields.
+/// The result of a case.
 struct Measured {
   double value = 0;
   double error_bar = 0;  ///< the value may differ from the exact one by so much
@@ -20,7 +20,7 @@ struct Measured {
 struct ValidationCase {
   std::string name;
   double exact = 0;
-  std::string source;  ///< where the exact value comes from: the number in Howell's catalogue, or the law
+  std::string source;  ///< where the exact value comes from: the number in Howell's catalog, or the law
   std::function<Measured(const Observer&)> measure;
 };
 
@@ -35,8 +35,8 @@ struct ValidationResult {
 /// The verdict: the value lies within its bar around the exact one. False for a value that is not a number.
 bool within_bar(const ValidationResult& result);
 
-/// Form factors, irradiances and radiosities with closed forms or laws; computed by the functions that a solve uses.
-/// The catalogue is Howell, A Catalog of Radiation Heat Transfer Configuration Factors.
+/// Form factors, irradiances and radiosities with closed forms or laws, computed by the functions of a solve. The
+/// catalog is Howell, A Catalog of Radiation Heat Transfer Configuration Factors.
 std::vector<ValidationCase> validation_cases();
 
 /// Runs the cases in order. The same bits for any number of threads. \throws Cancelled.
@@ -44,7 +44,7 @@ std::vector<ValidationResult> validate(std::span<const ValidationCase> cases, co
 
 }  // namespace patchlight
 
-// Configuration factors of Howell's catalogue, by their numbers there. Lengths in one unit.
+// Configuration factors of Howell's catalog, with their numbers there. Lengths are in one unit.
 namespace patchlight::validation {
 
 /// C-11: from a rectangle of a x b to its equal, directly opposed at distance c.

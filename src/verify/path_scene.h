@@ -49,8 +49,8 @@ Spectrum transmittance(const Surface& surface, double cosine);
 /// The share that is reflected there as by a mirror, per band; 0 where reflections are not followed.
 Spectrum specular_reflectance(const Surface& surface, double cosine);
 
-/// The share that it keeps there over that which it keeps of light from all directions alike. A pane sends out, and
-/// weighs what it reflects, by this: docs/theory/panes-mirrors-sheets.md.
+/// The share kept at this angle relative to the share kept of diffuse light. A pane weights its emitted and its
+/// reflected light by this: docs/theory/panes-mirrors-sheets.md.
 Spectrum relative_held(const Surface& surface, double cosine);
 
 /// The sides of a scene's polygons.
@@ -117,9 +117,9 @@ struct RayEnd {
 /// reflected, or ends to be scattered, in proportion to the mean shares of these.
 RayEnd walk_to_end(const PathScene& scene, std::optional<Hit> hit, const Vector& direction, std::uint32_t seed);
 
-/// For each point of a receiver 1 when it is exposed, 0 when it is covered: inside a solid, or against another face. A
-/// point is covered when another polygon lies over it in its plane, or when each of eight cosine-distributed rays and
-/// each of eight around its horizon meets a side that is not kept, or a face that lies against the receiver.
+/// For each point of a receiver: 1 if it is exposed, 0 if it is covered, i.e. inside a solid or against another face. A
+/// point is covered if another polygon lies over it in its plane. It is also covered if eight cosine-distributed rays
+/// and eight around its horizon all meet a side that is not kept, or a face against the receiver.
 std::vector<std::uint8_t> exposed(const Occluder& occluder, const Surfaces& surfaces, const PathReceiver& receiver,
                                   std::span<const Point> points, std::uint64_t seed);
 

@@ -6,9 +6,9 @@
 // estimates H(x) by B(y); rho(y) H(y) is found in the same way, and so on: a path. It goes on with a probability, and
 // what goes on is divided by it, which keeps the mean (Russian roulette, Arvo and Kirk 1990).
 //
-// The E(y) of lamps is also found by points on them and shadow rays, as a path seldom meets a small lamp. Where both
-// can find the same light, each of them counts it with its density over the sum of both (balance heuristic, Veach and
-// Guibas 1995): together once. By points on lamps alone, the variance would be infinite beside a lamp.
+// Points on lamps and shadow rays also find E(y), as a path seldom meets a small lamp. Light that both find is weighted
+// by their densities (balance heuristic, Veach and Guibas 1995). With points on lamps alone, the variance would be
+// infinite beside a lamp.
 //
 // No scattered ray meets luminaires or the sun: shadow rays find them. Scattered rays alone find the sky, if they leave
 // the scene.
@@ -430,7 +430,7 @@ std::optional<Vertex> PathTracer::next_vertex(const Hit& hit, const Spectrum& th
   return Vertex{hit.point, normal, hit.polygon, other, path.path, through / (survival - on_this_side)};
 }
 
-// Rays from so many vertices, of a share of which lights are asked.
+// The number of rays from these vertices; `asked` is the share of vertices that send shadow rays.
 std::uint64_t PathTracer::rays_of(std::size_t count, double asked) const {
   const auto to_sources = static_cast<double>(count * sources_.rays_per_point());
   return 2 * count + static_cast<std::uint64_t>(std::lround(asked * to_sources));

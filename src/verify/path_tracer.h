@@ -14,19 +14,19 @@
 
 namespace patchlight {
 
-/// A flat piece of one side of a polygon, whose mean irradiance is wanted.
+/// A flat piece of one side of a polygon; its mean irradiance is computed.
 struct PathReceiver {
   std::array<Point, 4> corners;  ///< convex, meters; a triangle repeats its last
   PolygonIndex polygon = 0;
   Side side = Side::front;
 };
 
-/// Several receivers as one, whose mean irradiance is wanted.
+/// Several receivers as one; their mean irradiance is computed.
 struct PathRegion {
   std::vector<PathReceiver> receivers;
 };
 
-/// Paths come in so many batches, each stratified on its own: their scatter is the standard error.
+/// The number of batches of paths, each stratified separately; their scatter gives the standard error.
 inline constexpr std::uint32_t path_batches = 32;
 
 /// How many paths are traced.
@@ -38,7 +38,7 @@ struct PathOptions {
 
 /// One row per receiver, one column per band.
 struct PathEstimate {
-  Field irradiance;         ///< mean over what is exposed of the receiver, W/m^2; 0 if nothing is
+  Field irradiance;         ///< mean over the exposed part of the receiver, W/m^2; 0 if nothing is
   Field standard_error;     ///< its standard error, W/m^2, estimated with path_batches - 1 degrees of freedom
   std::uint32_t paths = 0;  ///< per receiver
   std::uint64_t rays = 0;   ///< per vertex of a path one to a lamp and one scattered, where there are luminaires one to

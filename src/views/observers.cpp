@@ -21,8 +21,8 @@
 namespace patchlight {
 namespace {
 
-// Of H meters below the line of sight and Y beside it at the distance D: 1 + 0.8 R / D, from R = 0.6 D on 1 + 1.2 R /
-// D. Sources farther to the side than R = 3 D count like these.
+// The position index of a source H meters below the line of sight and Y beside it, at the distance D. It is 1 + 0.8 R /
+// D, and from R = 0.6 D on 1 + 1.2 R / D. Sources farther to the side than R = 3 D count like these.
 double index_below(double tangent) {
   const double ratio = std::min(tangent, 3.0);
   return 1 + (ratio < 0.6 ? 0.8 : 1.2) * ratio;
@@ -49,7 +49,7 @@ PartsSeen ways_to_parts(const Luminaire& luminaire, const PhotometricWeb& web, c
   return ways;
 }
 
-// Of the picture of the view, over 180 degrees.
+// Edge, in pixels, of the picture of the view over 180 degrees.
 constexpr int view_edge = 512;
 
 // Level directions whose mean is the cylindrical illuminance.
@@ -178,7 +178,7 @@ double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame,
   const Vector cosines = Vector(direction.dot(frame.zero_plane.cross(frame.aim)), direction.dot(frame.zero_plane),
                                 direction.dot(frame.aim))
                              .cwiseAbs();
-  // Of the ends of an elliptical cylinder along an axis, and the band of its side.
+  // The projected area of an elliptical cylinder along an axis: its ends and its side.
   const auto of_cylinder = [&](int axis) {
     const int p = (axis + 1) % 3, q = (axis + 2) % 3;
     return quarter_pi * sizes[p] * sizes[q] * cosines[axis] +

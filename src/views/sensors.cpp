@@ -73,7 +73,7 @@ void add(GatheredIrradiance& gathered, const Field& irradiance, const Field& sta
 
 void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
   add(gathered, more.irradiance, more.errors.rays);
-  // The same patches err in both.
+  // The errors of both come from the same patches, so they add linearly.
   gathered.errors.sampling += more.errors.sampling;
   gathered.errors.mesh += more.errors.mesh;
   gathered.errors.solver += more.errors.solver;

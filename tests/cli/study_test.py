@@ -42,7 +42,7 @@ class StudyTest(ToolTest):
             self.assertAlmostEqual(stages, float(row["cpu_seconds"]), delta=1e-6)
         # The last line but one is the sentence.
         self.assertEqual(done.stdout.splitlines()[-2], facts["conclusion"])
-        self.assertIn("what limits you is", facts["conclusion"])
+        self.assertIn("the largest error comes from", facts["conclusion"])
 
     def check_errors(self, rows, facts):
         """They fall with the patches."""

@@ -14,36 +14,36 @@ namespace patchlight {
 class LightPaths;
 class Occluder;
 
-/// Errors of the radiosities that are gathered, per patch and band, W/m^2. Empty fields: none.
+/// Errors of the gathered radiosities, per patch and band, W/m^2. Empty fields count as zero.
 struct RadiosityErrors {
   Field sampling;                      ///< standard deviations of errors that are independent of each other
-  std::vector<Field> correlated = {};  ///< equally likely draws of the sampling errors that patches have in common
+  std::vector<Field> correlated = {};  ///< equally likely draws of the sampling errors shared by patches
   Field mesh;                          ///< standard deviations of errors that patches share; empty where not known
   Field solver;                        ///< bounds
-  Field display;    ///< root mean square of how far points of a patch are from its mean; empty where not known
-  Field reflected;  ///< radiosity without exitance: where `mesh` is not known, the part of it that may be off
+  Field display;    ///< root mean square deviation of points of a patch from its mean; empty if unknown
+  Field reflected;  ///< radiosity without exitance: its error is estimated if `mesh` is unknown
 };
 
 /// How the light at sensors is sampled.
 struct GatherOptions {
   int least_rays = 4;          ///< shadow rays to a patch before the sensor
-  int rays = 8192;             ///< more of them to all patches together, in proportion to what patches may give
-  int most_rays = 1 << 18;     ///< where these leave more than the following relative standard error
-  double wanted_error = 0.01;  ///< relative standard error of a sensor
+  int rays = 8192;             ///< in total to all patches, in proportion to their possible light
+  int most_rays = 1 << 18;     ///< if the relative standard error is above wanted_error
+  double wanted_error = 0.01;  ///< requested relative standard error of a sensor
   std::uint64_t seed = 1;
   bool slopes = true;  ///< light varies along patches; else each is even, and readings are linear in radiosity
   RadiosityErrors errors = {};
-  const LightPaths* coloured = nullptr;  ///< what each band meets on its way; null where all meet the same
+  const LightPaths* coloured = nullptr;  ///< the paths per band; null if they are equal in all bands
 };
 
-/// Standard errors of irradiances by where they come from, W/m^2.
+/// Standard errors of irradiances by source, W/m^2.
 struct SensorErrors {
   Field rays;      ///< shadow rays from the sensor
-  Field sampling;  ///< what patches reflect of light that was sampled
-  Field mesh;      ///< that light was taken to be a plane on each patch, and the patches' own
+  Field sampling;  ///< of the sampled light that patches reflect
+  Field mesh;      ///< from the linear light on each patch, and the errors of the patches
   Field solver;    ///< a bound
 
-  /// The root of the sum of their squares.
+  /// The root of the sum of squares.
   Field total() const;
 };
 
@@ -53,24 +53,22 @@ struct GatheredIrradiance {
   SensorErrors errors;
 };
 
-/// Irradiance at points by gathering the solved radiosity: every patch by its closed-form form factor times the share
-/// of it that shadow rays reach. How many rays a patch gets follows from its unoccluded light, and not from the hits of
-/// its rays: where few of them get through narrow openings, none of the light is lost. The rays of a patch come in
-/// replicates with random shifts of their own, whose scatter is the standard error; it is at least what the heaviest
-/// ray would give of those patches whose rays agree, as no hit in n rays means at most a few in n. Sensors of which the
-/// standard error is too large get more rays, in proportion to its square. The random numbers follow from the sensor's
-/// place.
+/// Computes irradiance at points by gathering the solved radiosity. Each patch contributes its closed-form form factor
+/// times its visible fraction by shadow rays. The number of rays to a patch depends on its unoccluded light, not on the
+/// hits of its rays, so the estimate keeps all light through narrow openings. The rays of a patch form replicates with
+/// independent random shifts, whose scatter gives the standard error. Its lower bound is the heaviest ray of those
+/// patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with too large a standard error get
+/// more rays, in proportion to its square. The random numbers depend on the place of the sensor.
 ///
-/// On each patch the radiosity is a plane, its slopes fitted to the means of the patches around: above a patch that is
-/// bright in its middle less is read off its dark corners. The light that a plane does not explain is an error, by as
-/// much as the sensor sees the patch unevenly, docs/theory/irradiance-at-a-point.md. Such errors of patches add up in
-/// squares. If a polygon side has four patches or fewer, which symmetry may make alike, all that they reflect is one
-/// where `display` is not known.
+/// On each patch the radiosity is linear, with slopes fitted to the means of surrounding patches. The nonlinear part is
+/// an error, weighted by how unevenly the sensor sees the patch, docs/theory/irradiance-at-a-point.md. Such errors of
+/// patches add up in squares. If `display` is unknown, all reflected light of a polygon side with four patches or fewer
+/// is such an error, as symmetry may make these patches alike.
 ///
-/// The patches' own errors are gathered as their light is. Independent sampling errors add up in squares, and each draw
-/// of correlated ones as light does; mesh errors and the solver's bounds add up as they are. Where the mesh errors
-/// of the patches are not known, the relative error of the reflected light is estimated: the residual of the planes,
-/// root mean square over all sensors. O(points x patches). \throws Cancelled.
+/// The errors of the patches are gathered like their light. Independent sampling errors add up in squares. Each draw of
+/// correlated errors adds up like light. Mesh errors and the solver's bounds add up linearly. If the mesh errors of the
+/// patches are unknown, the relative error of the reflected light is estimated from the residual of the planes, root
+/// mean square over all sensors. O(points x patches). \throws Cancelled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});

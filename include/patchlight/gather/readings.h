@@ -18,10 +18,10 @@ namespace patchlight {
 /// The readings of the sensors of a scene: a row for each, group after group, a column for each band, W/m^2.
 struct Readings {
   Field irradiance;
-  Field standard_error;                      ///< in all
-  SensorErrors errors{};                     ///< what it is made of; empty fields: not known
-  std::vector<std::uint8_t> inside_wall{};   ///< per sensor: 1 where there is nothing to read, values are NaN; or empty
-  Bands bands{};                             ///< what the columns stand for
+  Field standard_error;                      ///< total
+  SensorErrors errors{};                     ///< its parts; empty fields: unknown
+  std::vector<std::uint8_t> inside_wall{};   ///< per sensor: 1 if it is inside a wall, with NaN values; or empty
+  Bands bands{};                             ///< the meaning of the columns
   bool photometric = false;                  ///< the lights are stated in lumens or lux: illuminance has a meaning
   std::optional<Spectrum> outside_by_sky{};  ///< irradiance of an unobstructed horizontal plane; given when a CIE
                                              ///< overcast sky is the only light: then there are daylight factors
@@ -31,13 +31,13 @@ struct Readings {
 /// else irradiance in W/m^2, the bands by their luminous weights.
 struct SensorValue {
   double value = 0;
-  double standard_error = 0;  ///< that of bands whose errors go together, as those of the same shadow rays do
+  double standard_error = 0;  ///< with fully correlated errors of bands, as bands share shadow rays
 };
 
 /// The parts of standard errors by name.
 std::array<std::pair<const char*, const Field*>, 4> parts_of(const SensorErrors& errors);
 
-/// True for a sensor inside a wall, from which nothing but the backs of surfaces is seen: it has no part in statistics.
+/// True for a sensor inside a wall, which sees only the backs of surfaces. Statistics exclude it.
 bool is_inside_wall(const Readings& readings, std::size_t sensor);
 
 /// The reading of one of the sensors.
@@ -50,8 +50,8 @@ const char* sensor_unit(const Readings& readings);
 /// must be given.
 double daylight_factor(const Readings& readings, std::size_t sensor);
 
-/// The readings of the sensors of one group, in sensor_unit(). Those inside walls count in the first two numbers alone;
-/// where all are, the others are not numbers.
+/// The statistics of one group of sensors, in sensor_unit(). Sensors inside walls count only in the first two numbers;
+/// if all are inside walls, the others are NaN.
 struct GroupReadings {
   std::string name;
   std::size_t sensors = 0;
@@ -59,9 +59,9 @@ struct GroupReadings {
   double min = 0;
   double mean = 0;
   double max = 0;
-  double standard_error_of_mean = 0;             ///< an upper bound: as if all errors went together
+  double standard_error_of_mean = 0;             ///< an upper bound, for fully correlated errors
   double uniformity = 0;                         ///< U0 = min / mean; 0 in the dark
-  double largest_standard_error = 0;             ///< of a sensor; not a number where one is not known
+  double largest_standard_error = 0;             ///< of a sensor; NaN if one is unknown
   std::optional<double> mean_daylight_factor{};  ///< percent
 };
 

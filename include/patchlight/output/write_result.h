@@ -29,9 +29,12 @@ const std::vector<std::string>& result_extensions();
 /// Writes the solved patches in the format that the extension names. \throws OutputError, also for an unknown one.
 void write_result(const std::filesystem::path& file, const SolvedSurface& surface, const Provenance& provenance);
 
-/// Writes a report as JSON: request and plan, facts and notes of the scene, per material its area, emitted and absorbed
-/// flux and irradiance, readings of sensors, raw row sums, energy balance, convergence history, seconds, and the memory
-/// that the process has taken so far. docs/reference/outputs/report-json.md lists the keys. \throws OutputError.
+/// Writes a report as JSON:
+/// - request and plan, facts and notes of the scene;
+/// - area, emitted and absorbed flux and irradiance of each material,
+/// - readings of sensors;
+/// - raw row sums, energy balance, convergence history, seconds, and peak memory of the process.
+/// docs/reference/outputs/report-json.md lists the keys. \throws OutputError.
 void write_report(const std::filesystem::path& file, const Report& report, const Provenance& provenance);
 
 /// A text that goes with a PNG.

@@ -63,9 +63,9 @@ struct SurfaceLight {
   double min = 0;          ///< of the patches' means
   double mean = 0;         ///< by area
   double uniformity = 0;   ///< U0 = min / mean; 0 in the dark
-  bool is_coarse = false;  ///< smaller patches may find a lower `min`, and so U0: a patch that is less than twice as
-                           ///< bright is larger than a cell of the grid that EN 12464-1 asks for, or points of it
-                           ///< are, by its display error, darker than `min` by more than a tenth
+  bool is_coarse = false;  ///< smaller patches may give a lower `min`, and so U0. A patch less than twice as bright
+                           ///< is larger than a cell of the EN 12464-1 grid. Or points of it are darker than `min`
+                           ///< by more than a tenth, by its display error
 };
 
 /// The light on the surfaces of a room.
@@ -169,7 +169,7 @@ SensorFacts sensor_facts(std::span<const SensorGroup> groups, const Readings& re
 /// Works out the report of a run; costs are those noted so far. O(patches log patches).
 Report report_of(const Scene& scene, const Request& request, const Simulation& simulation, SensorFacts sensors = {});
 
-/// False when an accuracy was asked for and the error bars are above it.
+/// False if an accuracy was requested and the error bars are above it.
 bool is_accurate(const Report& report);
 
 }  // namespace patchlight

@@ -12,15 +12,15 @@ namespace patchlight {
 /// The sun: parallel light.
 struct Sun {
   Vector direction = Vector::UnitZ();                 ///< unit, towards the sun
-  Spectrum normal_irradiance;                         ///< on a plane across its rays, W/m^2
+  Spectrum normal_irradiance;                         ///< on a plane perpendicular to its rays, W/m^2
   std::shared_ptr<const SampledSpectrum> spectrum{};  ///< as Luminaire::spectrum
 };
 
-/// How the radiance of a sky varies over its hemisphere.
+/// The distribution of radiance over a sky.
 enum class SkyKind : std::uint8_t { uniform, cie_overcast, cie_clear, perez };
 
-/// The sky, without the sun, and the ground below the horizon. Spectra have the scene's number of bands. The radiance
-/// of the sky is told by one of two spectra.
+/// The sky, without the sun, and the ground below the horizon. Spectra have the scene's number of bands. One of two
+/// spectra defines the radiance of the sky.
 struct Sky {
   SkyKind kind = SkyKind::uniform;
   Spectrum horizontal_irradiance{};        ///< of an unobstructed horizontal plane by the sky alone, W/m^2; or empty:
@@ -46,10 +46,10 @@ struct Daylight {
   std::optional<Sky> sky;  ///< nothing where there is no diffuse irradiance
 };
 
-/// The sun and the Perez sky of measured irradiances: clearness and brightness of Perez, Ineichen, Seals, Michalsky and
-/// Stewart 1990, eqs. 1 and 2, whose luminous efficacies (eqs. 6 to 8) turn what was measured into visible light: all
-/// `bands` are equal, with 179 lm/W. The ground is black. While the sun is below the horizon the
-/// sky is uniform and has the efficacy of a sun at the horizon.
+/// The sun and the Perez sky from measured irradiances. Clearness and brightness follow Perez, Ineichen, Seals,
+/// Michalsky and Stewart 1990, eqs. 1 and 2. Their luminous efficacies (eqs. 6 to 8) convert the measurements to
+/// visible light: all `bands` are equal, with 179 lm/W. The ground is black. If the sun is below the horizon, the sky
+/// is uniform and has the efficacy of a sun at the horizon.
 Daylight measured_daylight(const SolarIrradiance& measured, const Vector& sun_direction, const Vector& up,
                            Eigen::Index bands);
 

@@ -35,11 +35,10 @@ struct TextureMap {
   Eigen::Vector2d offset;
 };
 
-/// Stands for "no place in the picture is known".
+/// The texture map of polygons without known texture coordinates.
 inline constexpr std::uint32_t no_texture_map = ~std::uint32_t{0};
 
-/// A planar polygon of the model, not necessarily convex; a hole is joined to the outline by a seam that is walked
-/// along both ways.
+/// A planar polygon of the model, not necessarily convex. A seam, traversed both ways, joins a hole to the outline.
 struct Polygon {
   std::vector<std::uint32_t> corners;  ///< indices into Scene::vertices, at least three
   MaterialIndex material = 0;
@@ -74,12 +73,11 @@ const char* name_of(Projection projection);
 /// The projection of that name; nothing for other names.
 std::optional<Projection> projection_named(const std::string& name);
 
-/// The vertical field of view of a camera of which none is stated, and the largest one, degrees. A perspective stays
-/// below it.
+/// The default and the largest vertical field of view of a camera, degrees. A perspective stays below the largest.
 double usual_field_of_view(Projection projection);
 double largest_field_of_view(Projection projection);
 
-/// Where a picture is taken from.
+/// The viewpoint of a picture.
 struct Camera {
   Point eye;
   Point target;
@@ -89,7 +87,7 @@ struct Camera {
   double height = 0;  ///< of the part that an orthographic picture shows, meters
 };
 
-/// False when the projection of a camera cannot have its field of view, or its height.
+/// False if the projection of a camera does not allow its field of view or its height.
 bool has_extent(const Camera& camera);
 
 /// A material that may be meant as a lamp.
@@ -99,16 +97,16 @@ struct LampHint {
   std::string reason;  ///< "its Ka is 20, 20, 20"
 };
 
-/// A property of surfaces that is not simulated: they are taken for matt and opaque.
+/// A property of surfaces that is not simulated: they are treated as matte and opaque.
 enum class UnsimulatedProperty : std::uint8_t { mirror, glass };
 
-/// How many materials of a model's files have it.
+/// The number of materials of a model's files with this property.
 struct UnsimulatedMaterials {
   UnsimulatedProperty property = UnsimulatedProperty::mirror;
   std::size_t materials = 0;
 };
 
-/// How a scene that has spectra was given its bands, in words.
+/// How the bands of a scene with spectra were chosen, in words.
 struct BandChoice {
   bool spectral = true;  ///< not linear RGB
   std::string reason;    ///< "1 of 3 materials has a spectrum; 12 bands keep colors within 0.8 dE00"
@@ -132,23 +130,23 @@ struct Scene {
   double metres_per_unit = 1;                 ///< length of one unit of the model file
   bool unit_stated = false;                   ///< the model files state their unit, and no caller gave another
   Vector up = Vector::UnitZ();
-  bool up_stated = false;          ///< the model file or who reads it says which way is up
+  bool up_stated = false;          ///< the model file or the caller defines the vertical axis
   Vector north = Vector::UnitY();  ///< unit, at right angles to up
   bool north_stated = false;       ///< by the model file
   std::vector<Luminaire> luminaires;
   std::optional<Sun> sun;
   std::optional<Sky> sky;
   std::vector<UnsimulatedMaterials> unsimulated;  ///< counted per file that the scene comes from
-  Diagnostics diagnostics;                        ///< findings on the model, worst first, and then those of later steps
+  Diagnostics diagnostics;                        ///< findings on the model, worst first, then those of later steps
   std::vector<LampHint> lamp_hints;               ///< materials that do not emit, but may be meant to
   bool photometric = false;                       ///< lights are stated in lumens or lux: illuminance has a meaning
-  std::vector<SensorGroup> sensors;               ///< where irradiance is wanted
-  std::vector<Camera> cameras;                    ///< where pictures are taken from
+  std::vector<SensorGroup> sensors;               ///< groups of points at which irradiance is computed
+  std::vector<Camera> cameras;                    ///< viewpoints of pictures
   std::vector<NamedRoom> rooms;                   ///< that the models name
-  std::optional<BandChoice> band_choice{};        ///< nothing where nothing has a spectrum and no bands are asked for
+  std::optional<BandChoice> band_choice{};        ///< empty without spectra and without requested bands
 };
 
-/// How many bands the scene's spectra have. There must be a material.
+/// The number of bands of the scene's spectra. There must be a material.
 Eigen::Index number_of_bands(const Scene& scene);
 
 /// The meaning of its bands: Scene::bands, else usual_bands().
@@ -173,8 +171,8 @@ Vector front_normal(const Scene& scene, PolygonIndex polygon);
 /// The material of one side of a polygon.
 MaterialIndex material_on(const Polygon& polygon, Side side);
 
-/// Where points of one side of a polygon lie in the picture of its material; null when that has no picture or the place
-/// is not known: then the reflectance of the material holds.
+/// The texture map of one side of a polygon. Null if its material has no texture or the coordinates are unknown; then
+/// the reflectance of the material applies.
 const TextureMap* texture_map_on(const Scene& scene, const Polygon& polygon, Side side);
 
 /// True when this side of the polygon emits in any band: the front side with the polygon's material, the back side only
@@ -196,17 +194,17 @@ bool is_opening(const Scene& scene, PolygonIndex polygon);
 /// True when this side of the polygon is a mirror: its specular reflectance is above 0 in some band.
 bool is_mirror(const Scene& scene, PolygonIndex polygon, Side side);
 
-/// True when the polygon is a translucent sheet: light that arrives on one side is scattered out of the other as well,
-/// as the material of its front has a diffuse transmittance above 0 in some band. check() has that of its back the
-/// same.
+/// True if the polygon is a translucent sheet: the material of its front has a diffuse transmittance above 0 in some
+/// band. Light that arrives on one side is also scattered out of the other. check() requires the same diffuse
+/// transmittance on the back.
 bool is_sheet(const Scene& scene, PolygonIndex polygon);
 
-/// The axis that points up, guessed: of y and z that across which there is a quarter more area than across the other,
-/// as floors and ceilings make it. If neither, y where the lamps shine against it within 30 degrees, else z. For models
-/// whose files do not say.
+/// Guesses the axis that points up, for models whose files do not state it. Floors and ceilings give the axis, y or z,
+/// with a quarter more area across it than across the other. If neither has, y if the lamps shine against it within 30
+/// degrees, else z.
 Vector upright_axis(const Scene& scene);
 
-/// Where a polygon stands, for messages: "room.obj:12", or the file alone when the line is not known.
+/// The location of a polygon for messages: "room.obj:12", or the file alone if the line is unknown.
 std::string place_of(const Scene& scene, const Polygon& polygon);
 
 /// The name of an object or group; "object 3" for one without.
@@ -219,10 +217,16 @@ Box bounds(const Scene& scene);
 /// \throws InputError naming the file and line.
 void check_vertices(const Scene& scene);
 
-/// Checks the conditions of every later step: all that check_vertices() does, at least one polygon, planar polygons
-/// with area, a model of 1e-12 m or more, one of Scene::bands for each band if there are any, reflectance in [0, 1],
-/// transmittance, specular reflectance or diffuse transmittance not negative and with the reflectance at most 1, not
-/// two of them, the diffuse transmittance the same on both sides of a polygon, exitance finite and not negative.
+/// Checks the conditions of every later step:
+/// - those of check_vertices();
+/// - at least one polygon, and only planar polygons with area;
+/// - a model of 1e-12 m or more;
+/// - one of Scene::bands for each band, if there are any;
+/// - reflectance in [0, 1];
+/// - at most one of transmittance, specular reflectance and diffuse transmittance, not negative;
+/// - a sum of that and the reflectance of at most 1;
+/// - the same diffuse transmittance on both sides of a polygon;
+/// - exitance finite and not negative.
 /// \throws InputError naming the file and line, or the material.
 void check(const Scene& scene);
 

@@ -9,19 +9,19 @@
 
 namespace patchlight {
 
-/// A place where irradiance is wanted: meters, unit normal of the receiving side.
+/// A point at which irradiance is computed: meters, unit normal of the receiving side.
 struct Sensor {
   Point point;
   Vector normal;
 };
 
-/// Sensors that are asked for together.
+/// A named group of sensors.
 struct SensorGroup {
   std::string name;
   std::vector<Sensor> sensors;
   std::vector<std::array<Point, 4>> cells = {};  ///< of a grid, one around each sensor, meters; else empty
-  std::vector<std::string> columns = {};         ///< "x,y,z,nx,ny,nz" of each as the file has them; else empty
-  std::string file = {};                         ///< the file that asks for them, for messages
+  std::vector<std::string> columns = {};         ///< "x,y,z,nx,ny,nz" of each, as text of the file; else empty
+  std::string file = {};                         ///< the file that defines them, for messages
   std::vector<std::uint32_t> lines = {};         ///< in it, one for each sensor; one for all when it is a grid
 };
 

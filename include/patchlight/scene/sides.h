@@ -9,7 +9,7 @@
 
 namespace patchlight {
 
-/// Which sides of the polygons take part.
+/// Which sides of the polygons are simulated.
 enum class Sides {
   automatic,  ///< all but those into the dark: inside a closed solid without a lamp, outside of one around all lamps,
               ///< or with nothing before them
@@ -43,21 +43,23 @@ struct KeptInTheDark {
   bool turned_away = false;  ///< those that face the dark outside of a closed solid
 };
 
-/// Chooses the sides. A solid is a closed shell of polygons with a volume, or one with rims that opaque faces of others
-/// close, as a block without a bottom that stands on a floor; its turned polygons are seen as if turned back. It holds
-/// a lamp when a part of an emitting side or of a luminaire lies in it, with winding number +-1; what crosses its
-/// surface, or comes within 5e-7 of the scene's extent of it, where rounding decides, is inside and outside: no light
-/// is lost for it. Sun and sky shine from outside. Clear openings let light in and out. Sides::automatic keeps a side
-/// unless
-/// - it faces the inside of a closed solid that holds no lamp and has no opening to one outside, a dark solid: it
-///   belongs to the solid itself, or there is light elsewhere and the point just before its middle and all its corners
-///   lie within, or
+/// Chooses the sides. A solid is a closed shell of polygons with a volume. Opaque faces of others may close its rims,
+/// e.g. a block without a bottom that stands on a floor. Its turned polygons are seen as if turned back. A solid holds
+/// a lamp if a part of an emitting side or of a luminaire lies in it, with winding number +-1. A lamp that crosses its
+/// surface, or comes within 5e-7 of the scene's extent, counts as both inside and outside, so that no light is lost.
+/// Sun and sky shine from outside. Clear openings let light in and out.
+///
+/// Sides::automatic keeps a side unless
+/// - it faces the inside of a dark solid: a closed solid that holds no lamp and has no opening to one outside. The side
+///   belongs to the solid itself, or there is light elsewhere and all its corners and the point before its middle lie
+///   inside; or
 /// - it faces the outside of a closed shell that holds every lamp of the scene, or lies beside the bounds of one
-///   without openings: no light gets there, or
-/// - nothing of the scene lies before its plane, nor a luminaire, it does not emit, and there is no sun or sky.
-/// `in_the_dark` asks for such sides nevertheless; they are counted all the same, the last as turned away. What stands
-/// in dark solids is looked for as long as that takes a fraction of a second; beyond that it is kept.
-/// So the inner sides of a closed room are used even when its normals point outward; a note says so.
+///   without openings: no light gets there; or
+/// - nothing of the scene and no luminaire lies before its plane, it does not emit, and there is no sun or sky.
+///
+/// `in_the_dark` keeps such sides nevertheless; they are still counted, those of the last kind as turned away. The
+/// search for contents of dark solids has a limit of work; sides beyond it are kept. The inner sides of a closed room
+/// are used even if its normals point outward; a note reports this.
 KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark = {});
 
 /// Area of the kept sides in m^2; a polygon of which both are kept counts twice.

@@ -42,7 +42,7 @@ struct RadiosityProblem {
 /// B = E + R H for any irradiance H, W/m^2.
 Field radiosity_from(const RadiosityProblem& problem, const Field& irradiance);
 
-/// What patches send out before any of it has come from another patch: E + R H_direct, W/m^2.
+/// The radiosity of patches before any exchange between patches: E + R H_direct, W/m^2.
 Field source_radiosity(const RadiosityProblem& problem);
 
 /// The light that a solver has found, and how good it is.
@@ -74,9 +74,8 @@ struct EnergyBalance {
 /// ||x||_A = sqrt(sum_i A_i x_i^2) per band.
 Eigen::ArrayXd area_norm(const FieldView& x, const Eigen::VectorXd& area);
 
-/// How far a radiosity is off: ||B_ref - B||_A / ||B_ref - E||_A in the worst band; the light that lamps emit
-/// themselves is in neither norm. 0 where nothing differs, infinite where B_ref = E and B is not; what is not a number
-/// stays so.
+/// The relative error of a radiosity: ||B_ref - B||_A / ||B_ref - E||_A in the worst band. Neither norm includes the
+/// light that lamps emit. 0 without a difference, infinite if B_ref = E and B differs. NaN propagates.
 double relative_error(const FieldView& reference, const FieldView& radiosity, const RadiosityProblem& problem);
 
 }  // namespace patchlight

@@ -31,27 +31,25 @@ std::vector<Solver> all_solvers();
 /// The solver's name as on the command line.
 const char* name_of(Solver solver);
 
-/// True for the two that shoot: they take single rows of the transport, never all at once.
+/// True for the two shooting solvers: they take single rows of the transport, never all at once.
 bool is_shooting(Solver solver);
 
-/// True for those that sweep or shoot: they take a RowTransport. The others need no more than H = F B.
+/// True for solvers that sweep or shoot: they need a RowTransport. The others only need H = F B.
 bool takes_rows(Solver solver);
 
-/// True for those that take a transport with A_i F_ij = A_j F_ji alone: conjugate gradients.
+/// True for solvers that need a reciprocal transport, A_i F_ij = A_j F_ji: conjugate gradients.
 bool takes_reciprocity(Solver solver);
 
-/// True for those that take patches which scatter each by itself, without translucent sheets: all but GMRES, BiCGSTAB
-/// and Jacobi's iteration.
+/// True for solvers that need a diagonal R, without translucent sheets: all but GMRES, BiCGSTAB and Jacobi iteration.
 bool takes_diagonal(Solver solver);
 
-/// The solver that does well in any room: conjugate gradients, or GMRES where these do not hold, as form factors are
-/// not reciprocal or R is not diagonal.
+/// The default solver: conjugate gradients, or GMRES if form factors are not reciprocal or R is not diagonal.
 Solver usual_solver(const TransportOperator& transport, const RadiosityProblem& problem);
 
-/// The solver's relative error when none is asked for.
+/// The default relative error of the solver.
 inline constexpr double default_tolerance = 1e-6;
 
-/// Which solver, and when it stops.
+/// The solver and its stopping criteria.
 struct SolverOptions {
   Solver solver = Solver::cg;
   std::optional<double> relative_error = {};   ///< stop when the bound on ||B - B_k||_A / ||B_k - E||_A is below; left
@@ -75,15 +73,19 @@ struct SolverOptions {
 /// The relative error at which a solver with these options stops.
 inline double tolerance_of(const SolverOptions& options) { return options.relative_error.value_or(default_tolerance); }
 
-/// Solves B = E + R F B. Bands without light are not solved, and bands with equal reflectances whose lamps differ
-/// by a factor once, unless SolverOptions::every_band. Stops by the bound ||r||_A / (1 - kappa), kappa = rho_max times
-/// the largest row sum of F, of docs/theory/solvers-and-bounds.md; where kappa is not below 1, by the bound of every
-/// patch of the same section; where that is not known either, by the relative residual, with an infinite error_bound in
-/// the history. What cannot converge ends after max_iterations with converged = false and its history; a singular
-/// system at once, with Solution::trapped, unless the largest row sum is not to be found. \throws Cancelled;
-/// InputError, before any work, when takes_rows() and the transport is no RowTransport, or takes_reciprocity() and it
-/// is not reciprocal: then there is no kappa, and the bound is that of every patch; or takes_diagonal() and there are
-/// sheets.
+/// Solves B = E + R F B. Bands without light are not solved. Bands with equal reflectances whose lamps differ by a
+/// factor are solved once, unless SolverOptions::every_band.
+///
+/// The stopping criterion is the first of these that is known, see docs/theory/solvers-and-bounds.md:
+/// - the bound ||r||_A / (1 - kappa), kappa = rho_max times the largest row sum of F, if kappa < 1;
+/// - the bound of every patch,
+/// - the relative residual, with an infinite error_bound in the history.
+/// Without convergence it returns after max_iterations with converged = false and its history. For a singular system it
+/// returns at once, with Solution::trapped, unless the largest row sum is infinite.
+///
+/// A transport that is not reciprocal has no kappa; the bound of every patch applies. \throws Cancelled; InputError,
+/// before any work, if takes_rows() and the transport is no RowTransport, if takes_reciprocity() and the transport is
+/// not reciprocal, or if takes_diagonal() and there are sheets.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},
                const Observer& observer = {});
 

@@ -16,13 +16,13 @@ enum class PictureColors : std::uint8_t {
   luminance  ///< false colors from 0 to a round number of cd/m^2
 };
 
-/// Where the light of a picture comes from.
+/// The source of the light in a picture.
 enum class PictureQuality : std::uint8_t {
   draft,  ///< the smoothed solution
-  final   ///< the light of each point: straight from lights by shadow rays, and reflected by a final gather
+  final   ///< per point: direct light by shadow rays, reflected light by a final gather
 };
 
-/// How a picture is taken.
+/// Settings of a picture.
 struct PictureOptions {
   std::optional<Camera> camera = {};  ///< in meters; none: a view that shows most of the scene
   PictureColors colors = PictureColors::natural;
@@ -46,22 +46,22 @@ struct Picture {
                                              ///< each relative as PictureOptions::error is
 };
 
-/// Radiance in W/(m^2 sr) per patch as it is shown: that of the solution, and for a solution that has not converged
-/// also an estimate of the light still under way.
+/// The displayed radiance per patch, W/(m^2 sr): that of the solution. If the solution has not converged, it includes
+/// an estimate of the remaining light.
 Field display_radiance(const Simulation& simulation);
 
-/// Scale that maps radiance to display values, as Picture::exposure, for the patches of a solved scene: by its area,
-/// nine tenths of the lit surfaces stay below 0.7 of the display's white. By day only Simulation::enclosed counts, as
-/// long as some of it is lit: outside, all is so much brighter.
+/// The exposure of a solved scene, see Picture::exposure: the factor from radiance to display values. Nine tenths of
+/// the lit area stay below 0.7 of the display's white. By day only Simulation::enclosed counts if part of it is lit, as
+/// the outside is much brighter.
 double exposure_of(const Simulation& simulation);
 
-/// A picture of a solved scene. `simulation` comes from simulate(). When the observer stops a final picture, it stays
-/// unfinished. \throws Cancelled before there is anything; InputError for a camera that is none.
+/// A picture of a solved scene. `simulation` comes from simulate(). If the observer stops a final picture, the result
+/// is unfinished. \throws Cancelled if there is no picture yet; InputError for an invalid camera.
 Picture take_picture(const Simulation& simulation, const PictureOptions& options = {}, const Observer& observer = {});
 
-/// A picture of a model as it is, without light: each point as bright as its reflectance times its ambient occlusion
-/// (SolvedSurface::ambient_occlusion) within a distance in meters. Of the options camera, width and height count.
-/// \throws InputError for a camera that is none.
+/// A picture of a model without light: each point is as bright as its reflectance times its ambient occlusion
+/// (SolvedSurface::ambient_occlusion) within a distance in meters. Uses the options camera, width and height. \throws
+/// InputError for an invalid camera.
 Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance);
 
 /// How a lightmap is baked.
@@ -71,10 +71,9 @@ struct LightmapOptions {
   std::optional<double> texel = {};
 };
 
-/// The light on all surfaces of a solved scene but clear ones, for engines that show it in real time: gathered at each
-/// texel as in a final picture. `simulation` comes from simulate(). Takes 44
-/// bytes for each texel with three bands. \throws Cancelled; InputError when there are more groups of coplanar faces
-/// than the largest map has charts for.
+/// Bakes the light on all surfaces of a solved scene except clear ones, for real-time engines. Each texel is gathered
+/// like in a final picture. `simulation` comes from simulate(). Takes 44 bytes per texel with three bands. \throws
+/// Cancelled; InputError if there are more groups of coplanar faces than charts in the largest map.
 Lightmap bake_lightmap(const Simulation& simulation, const LightmapOptions& options = {},
                        const Observer& observer = {});
 

@@ -14,21 +14,21 @@ namespace patchlight {
 /// The readings of sensors in a solved scene.
 struct SensorView {
   Readings readings;
-  Diagnostics warnings;  ///< a sentence for each sensor whose place is in doubt
+  Diagnostics warnings;  ///< a sentence for each sensor at a doubtful place
 };
 
 /// Reads the sensors of a solved scene at their places: light gathered from its patches, and straight from
 /// luminaires, sun and sky. `simulation` comes from simulate(). \throws Cancelled.
 SensorView read_sensors(const Simulation& simulation, const Observer& observer = {});
 
-/// The same at other places than those of its scene.
+/// The same for sensors at other places.
 SensorView read_sensors(const Simulation& simulation, const std::vector<SensorGroup>& sensors,
                         const Observer& observer = {});
 
 /// True when sensors have daylight factors: all light comes from a CIE overcast sky.
 bool has_daylight_factors(const Scene& scene);
 
-/// The surface of a solved scene, ready to be written. It refers to the simulation, which must outlive it.
+/// The surface of a solved scene, for output. It refers to the simulation, which must outlive it.
 struct SolvedSurface {
   const Scene& scene;  ///< as read
   const Simulation& simulation;
@@ -38,8 +38,8 @@ struct SolvedSurface {
   Eigen::VectorXd ambient_occlusion_at_vertices = {};  ///< smoothed
 };
 
-/// Smooths the radiance of a solution, which traces rays along the patches, and with a distance in meters finds its
-/// ambient occlusion. `simulation` comes from simulate().
+/// Smooths the radiance of a solution by rays along the patches. With a distance in meters, it also computes ambient
+/// occlusion. `simulation` comes from simulate().
 SolvedSurface surface_of(const Simulation& simulation, const std::optional<double>& ambient_distance = {});
 
 /// The light for an observer at a camera's eye who looks at its target.
@@ -52,9 +52,9 @@ struct ObserverReading {
   std::optional<double> unified_glare_rating = {};  ///< CIE 117:1995; nothing without sources or background
 };
 
-/// The readings of observers in a solved scene. Windows, and things brighter than 500 cd/m^2 and four times the mean of
-/// the half space that is seen, glare, and so do measured luminaires by the sides of their luminous openings, with I /
-/// A_p as luminance. Lamps without extent give light, and glare does not count them. \throws Cancelled.
+/// The readings of observers in a solved scene. Sources of glare are windows and surfaces brighter than 500 cd/m^2 and
+/// than four times the mean of the visible half space. Measured luminaires glare by the sides of their luminous
+/// openings, with the luminance I / A_p. Lamps without extent give light, but no glare. \throws Cancelled.
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
                                             const Observer& observer = {});
 

@@ -210,7 +210,7 @@ void check_writable(const fs::path& file) {
   try {
     const fs::path target = followed(file);
     check_target(file, target);
-    // Only trying tells: permissions, read-only and full file systems.
+    // Permissions, read-only and full file systems show up only in a trial.
     const Temporary trial(target, file, Kind::file);
     remove_left(target.parent_path());
   } catch (const fs::filesystem_error& error) {

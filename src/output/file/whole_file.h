@@ -14,22 +14,22 @@
 
 namespace patchlight {
 
-/// The file itself, absolute, where `file` is a symbolic link to it, also when that is not there yet: renaming
-/// would replace the link. \throws OutputError when the name is empty, or links lead in a circle.
+/// The absolute path of the file. A symbolic link is resolved, also if its target does not exist yet, as renaming would
+/// replace the link. \throws OutputError if the name is empty, or links form a circle.
 std::filesystem::path followed(const std::filesystem::path& file);
 
-/// Lets `write` fill a temporary file beside `file`, flushes it to disk and renames it to `file`: whoever looks sees
-/// the old file or the whole new one. When `write` throws, the temporary file is removed and `file` stays as it was.
-/// \throws OutputError when the folder is missing or not writable, or `file` is a folder.
+/// Calls `write` for a temporary file beside `file`, flushes it to disk and renames it to `file`. A reader sees the old
+/// file or the whole new one. If `write` throws, the temporary file is removed and `file` stays unchanged. \throws
+/// OutputError if the folder is missing or not writable, or `file` is a folder.
 void write_whole_file(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
 /// Fails early: \throws OutputError when write_whole_file could not write here.
 void check_writable(const std::filesystem::path& file);
 
-/// Files that appear together: all are written into temporary folders beside their places before the first is renamed.
-/// Unpublished files are gone at the end. A run that is killed between the first rename and the last, which follow
-/// one another at once, leaves new files and old ones, each of them whole.
+/// Files that appear together: all are written to temporary folders beside their places before the first is renamed.
+/// The destructor removes unpublished files. A run that is killed between the first rename and the last leaves both new
+/// and old files, each of them whole.
 class WholeFiles {
  public:
   WholeFiles();
@@ -62,9 +62,9 @@ struct FolderResult {
 /// True for a folder that holds such a result, and nothing that was not written with it.
 bool holds_result(const std::filesystem::path& folder, const FolderResult& result);
 
-/// Lets `write` fill a temporary folder beside `folder` and renames it to `folder`: whoever looks sees the old folder
-/// or the whole new one. When `write` throws, the temporary folder is removed and `folder` stays as it was. \throws
-/// OutputError when the place is not writable, or `folder` is a file or holds files that may not be replaced.
+/// Calls `write` for a temporary folder beside `folder` and renames it to `folder`. A reader sees the old folder or the
+/// whole new one. If `write` throws, the temporary folder is removed and `folder` stays unchanged. \throws OutputError
+/// if the place is not writable, or `folder` is a file or holds files that may not be replaced.
 void write_whole_folder(const std::filesystem::path& folder, const MayReplace& may_replace,
                         const std::function<void(const std::filesystem::path& temporary)>& write);
 

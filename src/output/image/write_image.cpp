@@ -181,8 +181,8 @@ SharedExponent shared_exponent(const std::array<double, 3>& rgb) {
   return pixel;
 }
 
-// One of the four components of a scanline: runs of equal bytes as 128 + length and the byte, others as their number
-// and the bytes.
+// One of the four components of a scanline. A run of equal bytes becomes 128 + length and the byte; other bytes follow
+// their number.
 void append_runs(std::string& bytes, const std::vector<SharedExponent>& line, std::size_t component) {
   constexpr std::size_t least_run = 4;
   const auto run_at = [&](std::size_t begin) {

@@ -28,9 +28,13 @@ struct ExrChannel {
 void write_exr(const std::filesystem::path& file, int width, int height, const std::vector<ExrChannel>& channels,
                const std::string& comment = "");
 
-/// Writes a picture as OpenEXR: R, G, B in W/(m^2 sr), luminance.Y and error.Y in cd/m^2, depth.Z in meters, normal.X,
-/// Y and Z, and patch.id, the number of a patch from 0, or -1 as 4294967295 where none is; as far as the
-/// picture has them. \throws OutputError.
+/// Writes a picture as OpenEXR, with the channels that the picture has:
+/// - R, G, B in W/(m^2 sr);
+/// - luminance.Y and error.Y in cd/m^2,
+/// - depth.Z in meters;
+/// - normal.X, normal.Y and normal.Z,
+/// - patch.id, the number of a patch from 0; 4294967295 where there is none.
+/// \throws OutputError.
 void write_exr(const std::filesystem::path& file, const Picture& picture, const Bands& bands);
 
 /// The extensions that write_picture() knows: ".png", ".hdr", ".exr".

@@ -129,7 +129,7 @@ std::string one_line(std::string text) {
 std::string header(const PatchMesh& mesh, const Provenance& provenance) {
   std::ostringstream text;
   text << "ply\nformat binary_little_endian 1.0\n"
-       << "comment patchlight " << version() << "; metres; colours are sRGB at exposure " << provenance.exposure << '\n'
+       << "comment patchlight " << version() << "; meters; colors are sRGB at exposure " << provenance.exposure << '\n'
        << "comment " << one_line(provenance.command_line) << '\n'
        << "element vertex " << mesh.vertices.size() << '\n'
        << "property double x\nproperty double y\nproperty double z\n"

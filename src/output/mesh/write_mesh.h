@@ -35,7 +35,7 @@ inline constexpr int linear_filter = 9729, clamp_to_edge = 33071;
 /// glTF's y points up: of a scene whose z does, (x, y, z) becomes (x, z, -y).
 Vector y_up(const Vector& vector, const Scene& scene);
 
-/// Who made a glTF, and its one node at a place.
+/// The asset part of a glTF, with its generator, and its single node at a translation.
 nlohmann::ordered_json gltf_asset(const Provenance& provenance);
 nlohmann::ordered_json gltf_nodes(const Vector& translation);
 

@@ -21,8 +21,8 @@ namespace {
 constexpr int plot_width = 900;
 constexpr int plot_height = 600;
 
-// Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white: the eyes of the
-// color-blind tell them apart. 7 colors and 8 markers: the pairs repeat after 56 curves only.
+// Okabe and Ito, "Color Universal Design" (2008), without the yellow, which is too light on white. Color-blind readers
+// can distinguish these colors. With 7 colors and 8 markers, pairs repeat after 56 curves only.
 constexpr std::array<std::array<double, 3>, 7> curve_colours = {{{0, 0.447, 0.698},
                                                                  {0.835, 0.369, 0},
                                                                  {0, 0.620, 0.451},
@@ -57,7 +57,7 @@ constexpr std::array<Star, 8> markers = {{{},
                                           {10, 0, 0.45},
                                           {5},
                                           {8, std::numbers::pi / 4, 0.45}}};
-static_assert(std::gcd(curve_colours.size(), markers.size()) == 1, "else pairs of colour and marker repeat earlier");
+static_assert(std::gcd(curve_colours.size(), markers.size()) == 1, "else pairs of color and marker repeat earlier");
 
 void trace_marker(cairo_t* cairo, const Pixel& at, const Star& star) {
   if (star.corners == 0) return cairo_arc(cairo, at.x, at.y, marker_size, 0, 2 * std::numbers::pi);

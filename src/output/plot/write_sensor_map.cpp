@@ -174,7 +174,7 @@ struct Placed {
   double x = 0, y = 0, scale = 1;  // of the map's upper left corner; pixels per meter
 };
 
-// Squares around sensors whose file says nothing of cells, as wide as the two nearest are apart; none around few.
+// Squares around sensors without cells in their file, as wide as the distance of the two nearest; none around few.
 std::vector<std::array<Point, 4>> squares_around(const std::vector<Sensor>& sensors, const GridMap& map) {
   if (sensors.size() < 4 || sensors.size() > 20000) return {};
   double step = std::numeric_limits<double>::infinity();
@@ -393,7 +393,7 @@ std::vector<IsolinePiece> isoline(const Eigen::MatrixXd& values, double level) {
       const double mean = (around[0] + around[1] + around[2] + around[3]) / 4;
       if (!(mean == mean)) continue;
       const auto found = crossings(around, static_cast<double>(column), static_cast<double>(row), level);
-      // Of a saddle with four crossings the middle says which belong together.
+      // At a saddle with four crossings, the mean decides how they are connected.
       const std::size_t shift = found.size() == 4 && (mean >= level) == (around[0] >= level) ? 0 : 1;
       if (found.size() == 2) pieces.push_back({found[0], found[1]});
       for (std::size_t k = 0; found.size() == 4 && k < 4; k += 2)

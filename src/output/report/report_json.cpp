@@ -54,10 +54,9 @@ Json sensors_part(const SensorFacts& sensors) {
 }
 
 constexpr auto note_on_coarse =
-    "min and uniformity of a surface that is coarse may be too high, as dark patches of it are larger than the cells "
-    "of a grid by EN 12464-1, or points of them darker than their means. Sensors on a grid, which patchlight init "
-    "writes "
-    "for rooms, tell the values of the standard; smaller patches (mesh.patches) come nearer to them.";
+    "min and uniformity of a coarse surface may be too high: its dark patches are larger than the cells of an EN "
+    "12464-1 grid, or points of them are darker than their means. Sensors on a grid, which patchlight init writes for "
+    "rooms, give the values of the standard. Smaller patches (mesh.patches) come closer to them.";
 
 // The light on floor, walls and ceiling of each room.
 Json rooms_part(const Report& report) {
@@ -187,7 +186,7 @@ Json mesh_part(const Report& report) {
   return {{"patches", report.patches}, {"vertices", report.vertices}, {"area_m2", report.area}};
 }
 
-// The color of the light that a material sends out in the mean of its area.
+// The color of the light that a material sends out, averaged over its area.
 void add_colour(Json& part, const MaterialLight& material, const Bands& bands) {
   const Eigen::Vector3d xyz = xyz_of(material.radiance, bands);
   part["radiance_mean_W_m2_sr"] = json_array(material.radiance);

@@ -21,7 +21,7 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
 /// The same as a file. \throws OutputError.
 void write_plan(const std::filesystem::path& file, const Scene& scene, const Plan& plan, const ExpectedCost& cost);
 
-/// The contents of a scene and its problems as JSON. Of the faces of each problem the first 1,000 are listed.
+/// The contents of a scene and its problems as JSON. Each problem lists at most 1,000 faces.
 std::string survey_json(const Scene& scene, const SceneReport& report);
 
 /// The same as a file. \throws OutputError.

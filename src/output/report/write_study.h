@@ -14,9 +14,11 @@ namespace patchlight {
 /// The content of compare.json. Names from a model may hold bytes that are not UTF-8.
 nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& comparison, const Provenance& provenance);
 
-/// Writes a folder, whole or not at all: the table (compare.csv), every iteration of every solver (history.csv), both
-/// with the facts of the run (compare.json), the true error by iteration, by operator application and by second as
-/// plots (.svg and .png), and a series for ParaView per solver (SOLVER.pvd) where frames were kept.
+/// Writes a folder, whole or not at all, with:
+/// - the table (compare.csv) and every iteration of every solver (history.csv);
+/// - both with the facts of the run (compare.json),
+/// - plots (.svg and .png) of the true error by iteration, by operator application and by second;
+/// - a ParaView series per solver (SOLVER.pvd), if frames were kept.
 /// docs/reference/outputs/studies.md describes them. \throws OutputError, Cancelled.
 void write_comparison(const std::filesystem::path& folder, const Scene& scene, const Comparison& comparison,
                       const Provenance& provenance, const Observer& observer = {});
@@ -34,9 +36,12 @@ double seconds_of(const SolverRun& run, const Iteration& iteration);
 /// The content of study.json. Names from a model may hold bytes that are not UTF-8.
 nlohmann::ordered_json study_json(const Scene& scene, const Study& study, const Provenance& provenance);
 
-/// Writes a folder, whole or not at all: a row per setting (study.csv), the same with the reference, the prices and the
-/// conclusion (study.json), and plots (.svg and .png) of the error against CPU seconds and against the memory of the
-/// form factors, with the Pareto front, and of the errors by estimators of form factors alone.
+/// Writes a folder, whole or not at all, with:
+/// - a row per setting (study.csv);
+/// - the same with the reference, the prices and the conclusion (study.json),
+/// - plots (.svg and .png) of the error against CPU time and against the memory of the form factors, with the Pareto
+///   front;
+/// - plots of the errors by estimators of form factors alone.
 /// docs/reference/outputs/studies.md describes them. \throws OutputError.
 void write_study(const std::filesystem::path& folder, const Scene& scene, const Study& study,
                  const Provenance& provenance);

@@ -56,12 +56,16 @@ void check_series_writable(const std::filesystem::path& pvd);
 /// The extensions that write_points() knows, with their dots.
 std::vector<std::string> points_extensions();
 
-/// Writes the readings of sensors, by the extension of the file. .csv: a header line and a line for each sensor: x, y,
-/// z, nx, ny, nz as they were given (in meters where there is no such text), irradiance, its standard error and that
-/// one's parts per band in W/m^2 (E_r, E_g, E_b for three bands), with photometric lights illuminance and its standard
-/// error in lx, under an overcast sky the daylight factor in percent, 1 inside a wall (where values are nan) and else
-/// 0, and the group. .vtp: the same for ParaView, cells of grids as polygons, other sensors as vertices. \throws
-/// OutputError.
+/// Writes the readings of sensors in the format of the file's extension.
+///
+/// .csv: a header line and a line for each sensor, with:
+/// - x, y, z, nx, ny, nz as in the input, or in meters without such text;
+/// - irradiance, its standard error and the parts of the error per band in W/m^2 (E_r, E_g, E_b for three bands),
+/// - with photometric lights, illuminance and its standard error in lx;
+/// - under an overcast sky, the daylight factor in percent,
+/// - 1 inside a wall, where values are nan, else 0;
+/// - the group.
+/// .vtp: the same for ParaView, with cells of grids as polygons and other sensors as vertices. \throws OutputError.
 void write_points(const std::filesystem::path& file, std::span<const SensorGroup> groups, const Readings& readings);
 
 /// Writes a scene and the faces that are wrong in it as VTK XML PolyData (.vtp) for ParaView. Cell arrays: problem_kind

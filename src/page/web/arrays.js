@@ -9,7 +9,7 @@ async function inflated(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// three.js and its controls, which are as long as all else together.
+// three.js and its controls.
 async function loadThree(packed) {
   const script = document.createElement("script");
   script.textContent = new TextDecoder().decode(await inflated(packed));

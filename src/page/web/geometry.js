@@ -9,8 +9,8 @@ function grouped(faces, opacityOf, layerOf, dark) {
   return [...groups.values()].sort((a, b) => b.opacity - a.opacity || a.layer - b.layer);
 }
 
-// Per corner of a face the way in its plane that moves both edges there outward by one; no longer than two, where a
-// corner is sharp.
+// Per corner of a face, the vector in its plane that moves both adjacent edges outward by one. At sharp corners its
+// length is limited to two.
 function outwardOf(corners, normal) {
   const ways = corners.map((corner, k) => new THREE.Vector3().subVectors(corners[(k + 1) % corners.length], corner).cross(normal).normalize());
   return ways.map((way, k) => {
@@ -19,10 +19,10 @@ function outwardOf(corners, normal) {
   });
 }
 
-// The faces of the page as triangles, three corners each, around the middle of their bounds. `groups` says which
-// triangles have which opacity and layer. A face with others over it is sunk by the rounding of positions, layer by
-// layer, and a dark one once more. Opaque faces with light have a way `outward` for each corner, in units of 1/63.5:
-// the shader lets neighbors overlap.
+// The faces of the page as triangles, three corners each, relative to the center of their bounds. `groups` gives the
+// opacity and layer of ranges of triangles. A face with others over it is lowered by the rounding of positions, layer
+// by layer, and a dark one once more. Opaque faces with light have an `outward` vector for each corner, in units of
+// 1/63.5, by which the shader makes neighbors overlap.
 function triangles(faces, opacityOf, layerOf, dark) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
@@ -73,7 +73,7 @@ function outlines(faces, mesh, chosen) {
   return new Float32Array(ends);
 }
 
-// Where no light is a surface is gray: it is not looked at but where the model is cut.
+// Surfaces without light are gray; they show only where the model is cut.
 const unlit = [150, 150, 146];
 
 // Colors of the corners of all triangles, a byte per channel.

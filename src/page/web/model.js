@@ -1,5 +1,4 @@
-// So far, in pixels, faces reach over their edges: the rounding of a corner that lies on a neighbor's edge leaves gaps
-// of less.
+// Overlap of faces beyond their edges, in pixels. A rounded corner on a neighbor's edge leaves smaller gaps.
 const overlap = 0.15;
 
 // Faces that overlap their neighbors, by the rounding of positions and a part of a pixel. `reach` holds both.
@@ -12,8 +11,8 @@ function withOverlap(material, reach) {
   return material;
 }
 
-// A material for each group of faces, all opaque or as their opacity says: a pane adds its reflection to the light
-// through it. Faces under others are drawn farther away, behind lines all are.
+// A material for each group of faces, all opaque or with their own opacity. A pane adds its reflection to the light
+// through it. Faces under others are drawn farther away, and all faces behind lines.
 function surfaceMaterials(groups, reach) {
   const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1 + layer, polygonOffsetUnits: 1 + 4 * layer});
   const opaque = ({layer}) => withOverlap(new THREE.MeshBasicMaterial(plain(layer)), reach);
@@ -84,7 +83,7 @@ function modelView(canvas, model) {
     waiting = true;
     requestAnimationFrame(() => {
       waiting = false;
-      // The nearest that may be seen: the farther that is, the better depths are told apart.
+      // The near plane: a larger distance gives better depth resolution.
       camera.near = Math.max(mesh.size / 2000, 0.9 * bounds.distanceToPoint(camera.position) * Math.cos(0.5 * camera.fov * Math.PI / 180) * 0.5);
       camera.updateProjectionMatrix();
       reach.value.set(mesh.step, overlap * 2 * Math.tan(0.5 * camera.fov * Math.PI / 180) / Math.max(1, canvas.height));

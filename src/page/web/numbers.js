@@ -1,4 +1,4 @@
-// How numbers are written: four digits, as many as are worth reading.
+// Number formats: four digits.
 function shown(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "not known";
   if (!Number.isFinite(value)) return value > 0 ? "no bound" : "none";
@@ -13,7 +13,7 @@ function percent(share) {
   return shown(100 * share, 3) + "\u00a0%";
 }
 
-// Two digits say enough of how long something took, or all digits of whole seconds.
+// Durations have two digits, or all digits of whole seconds.
 function duration(seconds) {
   return Number.isFinite(seconds) && seconds >= 100 ? shown(Math.round(seconds), 9) : shown(seconds, 2);
 }

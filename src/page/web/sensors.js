@@ -55,7 +55,7 @@ function sensorMap(name, unit, axes, group, values, errors) {
   const to = ([x, y]) => [((x - low[0]) * scaleFactor).toFixed(1), (height - (y - low[1]) * scaleFactor).toFixed(1)];
   const known = Array.from(values).filter((value) => Number.isFinite(value));
   const least = known.reduce((a, b) => Math.min(a, b), Infinity), most = known.reduce((a, b) => Math.max(a, b), -Infinity);
-  // As of patches: a place in the sun, or before a lamp, does not decide.
+  // Like for patches, a point in the sun or before a lamp does not set the range.
   const order = ranked(values, new Float32Array(values.length).fill(1));
   const {high: top} = usualScale(order);
   const scale = {low: 0, high: top, logarithmic: false};

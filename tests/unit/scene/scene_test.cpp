@@ -118,7 +118,7 @@ TEST(CheckScene, WantsOneOfTheStatedBandsForEachValue) {
   scene.bands = usual_bands(3);
   EXPECT_EQ(refusal(scene), "");
   scene.bands.pop_back();
-  EXPECT_TRUE(begins(refusal(scene), "room.obj: the scene says what 2 bands stand for, and its materials have 3"));
+  EXPECT_TRUE(begins(refusal(scene), "room.obj: the scene defines 2 bands, and its materials have 3"));
 }
 
 TEST(CheckScene, NamesTheLineOfABadPolygon) {

@@ -133,21 +133,24 @@ TEST(Price, IsNotKnownWhereTheReferenceIsNoBetter) {
   EXPECT_NE(price_of(0.1, study).finding, Finding::not_known);
   EXPECT_EQ(
       conclusion(study),
-      "what 1 % costs is not known, as the reference itself is no better than that, what 0.3 % costs is not known, "
-      "as the reference itself is no better than that; what limits you is the size of the patches (1.9 % of the "
+      "the cost of 1 % is not known, as the error of the reference is no smaller, the cost of 0.3 % is not known, "
+      "as the error of the reference is no smaller; the largest error comes from the size of the patches (1.9 % of the "
       "light at the finest setting), by a reference that is itself good to 4.5 %, most of all on `floor`, 50 % of "
       "the squared error.");
 }
 
 TEST(Conclusion, SaysPricesAndWhatLimits) {
-  EXPECT_EQ(conclusion(made_up(1, 0.01)),
-            "1 % costs 16 CPU seconds here, 0.3 % costs about 1975 CPU seconds (by the observed order 1); what limits "
-            "you is the size of the patches (1 % of the light at the finest setting), most of all on `floor`, 50 % of "
-            "the squared error.");
+  EXPECT_EQ(
+      conclusion(made_up(1, 0.01)),
+      "1 % costs 16 s of CPU time here, 0.3 % costs about 1975 s of CPU time (by the observed order 1); the largest "
+      "error comes from the size of the patches (1 % of the light at the finest setting), most of all on `floor`, 50 % "
+      "of "
+      "the squared error.");
   Study study = made_up(0.5, 0.1);
   study.parts.form_factors = 0.2;
   EXPECT_EQ(conclusion(study),
-            "1 % is not reached within 1600 patches, 0.3 % is not reached within 1600 patches; what limits you is the "
+            "1 % is not reached within 1600 patches, 0.3 % is not reached within 1600 patches; the largest "
+            "error comes from the "
             "sampling of the form factors (20 % of the light at the finest setting).");
   study.parts.solver = 0.3;
   EXPECT_NE(conclusion(study).find("the solver's tolerance (30 %"), std::string::npos);
