@@ -28,7 +28,7 @@ bool is_one_file(const FormFactorArguments& arguments) {
   return arguments.output.extension() == ".npy" || arguments.output.extension() == ".mtx";
 }
 
-// More groups than fit on a line are left to the CSV.
+// Prints only as many groups as fit on a line; the CSV has all.
 std::string table(const GroupFactors& groups) {
   if (groups.names.size() > 12) {
     return std::to_string(groups.names.size()) + " " + name_of(groups.by) + "s: too many to print\n";
@@ -47,7 +47,7 @@ std::string table(const GroupFactors& groups) {
   return text.str();
 }
 
-// The reference of a group's figures.
+// A note on the definition of the group factors for faces with two simulated sides.
 Diagnostics note_on_groups(const KeptSides& sides) {
   std::size_t both = 0;
   for (std::size_t p = 0; p < sides.front.size(); ++p) both += sides.front[p] != 0 && sides.back[p] != 0 ? 1 : 0;
@@ -72,13 +72,13 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   return text.str();
 }
 
-// The output about form factors that are written.
+// Facts about written form factors.
 struct Written {
   Diagnostics notes;
   std::string summary;
 };
 
-// Of either kind of form factors.
+// Writes form factors of either method.
 template <class Found>
 Diagnostics notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
   Diagnostics all = merged({remarks_of(scene), found.plan.sides.notes, found.plan.notes, found.notes});
@@ -129,7 +129,7 @@ std::string table(const Comparison& comparison) {
   return text_table(rows);
 }
 
-// Those of the spectral radius, at most six.
+// Known digits of the spectral radius, at most six.
 int known_digits(const Comparison& comparison) {
   const double share = comparison.spectral_radius_error / comparison.spectral_radius;
   return share > 1e-6 ? std::max(1, static_cast<int>(-std::log10(share))) : 6;
@@ -150,7 +150,7 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
   return text.str();
 }
 
-// The solvers that have given up. Rows on demand are not closed: that they do not come as near is no failure.
+// Solvers that did not converge. Rows on demand have no closure, so that a larger deviation is no failure.
 std::string not_reached(const Comparison& comparison) {
   std::string names;
   for (const SolverRun& run : comparison.runs) {
@@ -174,7 +174,7 @@ void write_page_of_comparison(const ComparisonArguments& arguments, const Scene&
                               .comparison = &comparison});
 }
 
-// An error that is not above what the reference is good to has a question mark.
+// Marks an error with a question mark if it is within the error of the reference.
 std::string judged(double error, const Study& study) {
   return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");
 }

@@ -11,14 +11,14 @@
 namespace patchlight::cli {
 namespace {
 
-// The name of a unit, and its size.
+// Name and size of a unit.
 using Unit = std::pair<const char*, double>;
 
-// A number alone is in meters.
+// A plain number is in meters.
 constexpr std::array<Unit, 6> units_of_length = {
     {{"", 1}, {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
-// A number above 0 times the unit that follows it; nothing when there is no such unit.
+// A positive number times its unit; empty for an unknown unit.
 std::optional<double> quantity(const std::string& text, std::span<const Unit> units) {
   const std::size_t end = text.find_last_of("0123456789.") + 1;
   const std::size_t begin = std::min(text.find_first_not_of(' ', end), text.size());

@@ -25,7 +25,7 @@
 namespace patchlight {
 namespace {
 
-// Form factors between the patches of a scene, and the equations that are solved with them: B = E + R F B.
+// Form factors between the patches of a scene, and the equations B = E + R F B.
 struct TransportProblem {
   PatchMesh mesh;
   RadiosityProblem problem;
@@ -34,8 +34,8 @@ struct TransportProblem {
   std::shared_ptr<const RowTransport> transport;
 };
 
-// Per sensor of the scene (row) and patch the irradiance by a radiosity of 1 of that patch: its form factor with what
-// stands between, as sensors gather it. Not a number for sensors inside walls. Throws Cancelled.
+// For each sensor (row) and patch, the irradiance for unit radiosity of that patch: its form factor including
+// occlusion. NaN for sensors inside walls. Throws `Cancelled`.
 Field sensor_factors(const TransportProblem& problem, const Observer& observer) {
   const Scene& scene = problem.world->scene();
   const Occluder& occluder = problem.world->all_faces();
@@ -54,10 +54,10 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   return factors;
 }
 
-// Traces and closes form factors, and keeps them. Throws InputError, MemoryError, Cancelled.
+// Computes form factors with closure and keeps them. Throws InputError, MemoryError, `Cancelled`.
 TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer) {
-  // 1. The form factors as they are found: a run closes them
+  // 1. The form factors before closure, which a run applies
   check(*scene);
   Request raw = request;
   raw.assembly.close = false;
@@ -69,7 +69,7 @@ TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, co
   const SolveWith take_problem = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                      const SolverOptions&, const Observer&) {
     result.problem = problem;
-    // The lamps' light alone: nobody looks at the solution.
+    // Only the light of the lamps; the solution is not used.
     Solution solution;
     solution.direct_irradiance = transport.apply(problem.exitance);
     solution.irradiance = solution.direct_irradiance;

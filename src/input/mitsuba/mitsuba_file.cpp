@@ -29,7 +29,7 @@ std::string plain_name(const char* name) {
   return result;
 }
 
-// From a frame that looks along +z, with y up, to the world; its x axis points to the left.
+// The transformation from a frame that looks along +z, with y up and x to the left, to the world.
 std::optional<Eigen::Matrix4d> look_at(const Vector& origin, const Vector& target, const Vector& up) {
   const Vector forward = (target - origin).stableNormalized();
   const Vector left = up.cross(forward).stableNormalized();
@@ -66,7 +66,7 @@ Vector rgb_weights(double wavelength) {
   return to_rgb * xyz_at(wavelength);
 }
 
-// The value of sampled wavelengths at one.
+// Interpolates sampled wavelengths.
 double sample_at(std::span<const std::pair<double, double>> samples, double wavelength) {
   const auto above = std::lower_bound(samples.begin(), samples.end(), wavelength,
                                       [](const auto& sample, double place) { return sample.first < place; });
@@ -103,7 +103,7 @@ Spectrum of_hexadecimal(const MitsubaFile& file, const pugi::xml_node& node, con
   return linear_rgb_of(rgb(part(1), part(3), part(5)));
 }
 
-// "400:0.1, 700:0.9"
+// Reads "400:0.1, 700:0.9".
 Spectrum of_pairs(const MitsubaFile& file, const pugi::xml_node& node, std::string value) {
   std::replace(value.begin(), value.end(), ',', ' ');
   std::vector<std::pair<double, double>> samples;
@@ -130,7 +130,7 @@ MitsubaColour of_black_body(const MitsubaFile& file, const pugi::xml_node& node)
   return {rgb_of_wavelengths(samples).max(0), "a black body counts by its radiance per nm"};
 }
 
-// A color of a checkerboard, which is no texture itself.
+// A checkerboard color; nested textures are not allowed.
 Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const std::string& name, double otherwise) {
   const pugi::xml_node field = file.property(node, name);
   const bool is_texture = std::string_view(field.name()) == "texture";
@@ -232,7 +232,7 @@ std::uint32_t MitsubaFile::line(const pugi::xml_node& node) const {
   return line_of(file, node);
 }
 
-// The longest name that is known counts: $spp2 is not $spp and a 2.
+// The longest known name matches: $spp2 is not $spp followed by 2.
 std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute) const {
   const std::string_view said = node.attribute(attribute).value();
   std::string result;
@@ -307,7 +307,7 @@ bool MitsubaFile::flag(const pugi::xml_node& node, const std::string& name) cons
   return word(node, name, "false") == "true";
 }
 
-// value="1, 2, 3", value="2" for all, or x, y and z one by one.
+// Reads value="1, 2, 3", value="2" for all axes, or x, y and z separately.
 Vector MitsubaFile::axes(const pugi::xml_node& node, double otherwise) const {
   Vector result = Vector::Constant(otherwise);
   if (node.attribute("value")) {

@@ -30,7 +30,7 @@ RadianceMaterial translucent_of(const std::string& name, const std::vector<doubl
   return {translucent(name, colour_in(numbers), gloss, through, straight), simplified};
 }
 
-// A solid body of glass; the two faces of a sheet of it count once, as those of panes do.
+// A solid body of glass; two parallel faces of a sheet count as one pane.
 RadianceMaterial body_of_glass(const std::string& name, double stated_index) {
   const double index = plausible_index(stated_index);
   Material material = black(name);
@@ -149,7 +149,7 @@ void RadianceModifiers::define(const RadiancePrimitive& primitive, const std::st
   } else {
     require_numbers(primitive, where);
   }
-  // An alias keeps what modifies its original unless it has a modifier of its own.
+  // An alias keeps the modifier of its original unless it has its own.
   modifier.under = place_of(primitive.modifier).value_or(modifier.under);
   last_[primitive.name] = all_.size();
   all_.push_back(std::move(modifier));

@@ -23,7 +23,7 @@ bool names_file(const TomlValue& value) {
   return value.kind == TomlValue::Kind::text && !value.text.empty() && !is_name_of_light(value);
 }
 
-// Messages name the line that asks for a missing file; for a fault in the file they name its own line.
+// A missing file is reported at the line that names it, a fault in the file at its own line.
 SampledSpectrum read_named(const TomlValue& value, const TomlFrame& frame) {
   const std::filesystem::path file = named_file(value, frame);
   std::error_code error;
