@@ -99,9 +99,9 @@ std::vector<std::string> readable_formats();
 /// \throws InputError when the file is missing, unreadable or unusable.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// Applies the settings, the vertical axis and the daylight of the options to a scene that was read before.
+/// Applies the settings, the vertical axis and the daylight of the options to a scene that was read before. In bands of
+/// wavelengths the spectrum of new light is approximate, with a note.
 /// \throws InputError when no material has the name of a setting, or check() refuses a changed material.
-/// In bands of wavelengths the spectrum of new light is approximate, with a note.
 Scene with_options(Scene scene, const ReadOptions& options);
 
 /// Reads several models as one scene. Materials with the same name and values are merged. Materials with the same name
