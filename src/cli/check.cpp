@@ -288,7 +288,7 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
                                   : counted(cost.sensors, "sensor") + " of about " + rounded(cost.sensor_seconds, 2) +
                                         (cost.of_first_mesh ? " processor seconds or more, " : " processor seconds, ");
   return std::string("in addition: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
+         (has_second_mesh ? "a second mesh if the error of the first is above 2 %, " : "") + sensors +
          "requested images and pages" +
          (plan.accuracy.seconds ? "; --time-limit does not include sensors and images" : "") + "\n";
 }
@@ -340,7 +340,7 @@ ExitCode plan(const PlanArguments& arguments) {
   print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
-            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
+            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches (on: simulated)\n"
             << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(plan, cost) << std::flush;
   return good;
 }

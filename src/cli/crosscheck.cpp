@@ -90,7 +90,7 @@ std::string bars(const std::optional<double>& bar, const Simulation& simulation)
   const bool solver_known = std::isfinite(errors.solver);
   return "the error bars of the patches, " + percent(known_error(errors), 2) + " % as a whole (mesh " +
          percent(errors.mesh, 2) + ", form factors " + percent(errors.form_factor, 2) + ", solver " +
-         (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
+         (solver_known ? percent(errors.solver, 1) : "unknown and not included") + ")";
 }
 
 // The typical error of a patch in the band where it is largest. Empty if the paths found almost no light.
@@ -124,16 +124,14 @@ std::string figures_of(const VerifiedPart& part, bool explained) {
           << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
           << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string());
   return (part.name == "all" ? "" : part.name + ", " + std::to_string(part.rows.size()) + " patches\n") +
-         figure("bars " + percent(part.width, 2) + " % of the light",
-                "how far the irradiance of these patches is stated to be off", explained) +
-         figure(typical_error(part), "how far each by itself is off, about the bars or less where the answer is right",
+         figure("bars " + percent(part.width, 2) + " % of the light", "stated error of the irradiance of these patches",
                 explained) +
-         figure(mean.str(),
-                "how far all together are off, less than each where some are too bright and others too dark",
+         figure(typical_error(part), "error of each patch, about the bars or less if the solution is correct",
                 explained) +
+         figure(mean.str(), "error of the sum, smaller if too bright and too dark patches cancel", explained) +
          figure(
              squares.str(),
-             "differences over bars and noise, squared and summed, about one a patch or less where the answer is right",
+             "sum of squared differences over bars and noise, about one per patch or less if the solution is correct",
              explained);
 }
 
@@ -162,7 +160,7 @@ std::string figures(const Verification& verification) {
   for (const VerifiedFamily& family : verification.families) text += figures_of(family);
   return text + "z by the noise of the paths alone: root mean square " +
          standard_errors(root_mean_square(deviations_by_noise(verification)), 3) +
-         " (1 is noise; above it the paths see errors, which the bars have to cover)\n";
+         " (1 is noise; larger values are errors, which the bars must cover)\n";
 }
 
 std::string sides_left_out(const Scene& scene, const Verification& verification) {

@@ -54,8 +54,8 @@ Diagnostics note_on_groups(const KeptSides& sides) {
   if (both == 0) return {};
   return {{DiagnosticCode::both_sides,
            "both sides of " + std::to_string(both) +
-               " faces take part: the form factor from a group is a share of what leaves all of its sides together, "
-               "half of that from the fronts where backs see nothing; --sides front leaves the backs out",
+               " faces are simulated: the form factor from a group is a fraction of the light from all of its sides, "
+               "half of that from the fronts if the backs see nothing\nhint: --sides front leaves the backs out",
            both}};
 }
 
@@ -144,9 +144,9 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
     if (run.contestant.solver != Solver::jacobi || !std::isfinite(run.rate)) continue;
     text << ", which is Jacobi's rate; observed " << rounded(run.rate, 6);
   }
-  text << "\niterations of what shoots: shots / patches; applications of the matrix, or as many rows; rate: of the "
-          "error "
-          "per iteration\n";
+  text << "\niterations of shooting solvers: shots / patches; applications: of the matrix, or as many rows; rate: of "
+          "the "
+          "error per iteration\n";
   return text.str();
 }
 
@@ -202,11 +202,11 @@ std::string facts(const Scene& scene, const Study& study) {
     text << "the closed form: a closed room with E = 1 - rho";
   } else {
     text << "a solution with " << reference.patches << " patches and " << reference.samples << " samples ("
-         << rounded(reference.cpu_seconds) << " CPU seconds), itself good to " << percent(reference.bar) << " %";
+         << rounded(reference.cpu_seconds) << " processor seconds) with an error of " << percent(reference.bar) << " %";
   }
   text << "\nerror: of the patch means; display: of the field, constant on each patch; own: due to the swept quantity "
-          "alone; *: on the Pareto front of error and CPU seconds\n"
-       << (reference.bar > 0 ? "?: not known, as the reference is no better than that\n" : "")
+          "alone; *: on the Pareto front of error and processor seconds\n"
+       << (reference.bar > 0 ? "?: not significant, since the reference has a similar error\n" : "")
        << "at the finest setting: mesh " << percent(study.parts.mesh) << " %, form factors "
        << percent(study.parts.form_factors) << " %, solver " << percent(study.parts.solver) << " %\n";
   return text.str();

@@ -68,7 +68,7 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
   if (given.file.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs " + file_option + " FILE");
   if (std::count(given.views.begin(), given.views.end(), "") > 0) throw refusal("--view", "", "the name of a camera");
   if (given.camera && !given.views.empty())
-    throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
+    throw UsageError("--camera and --view both set the camera; give one of them");
   if (given.projection && !given.camera)
     throw UsageError("--projection needs --camera EYE TARGET FOV; a camera of a scene file states its own");
   if (given.camera && given.camera->eye == given.camera->target)

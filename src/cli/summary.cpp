@@ -91,7 +91,7 @@ std::string why_imbalanced(const Report& report) {
       1 / std::sqrt(static_cast<double>(report.plan.assembly.rays) * static_cast<double>(report.patches));
   if (report.balance.imbalance < usual / 10) return {};
   const bool is_noise = report.balance.imbalance <= 10 * usual;
-  return std::string(is_noise ? ", by the noise of the rays" : ", more than the noise of the rays explains") +
+  return std::string(is_noise ? ", due to the noise of the rays" : ", more than the noise of the rays explains") +
          ": up to a few times " + rounded(usual, 1) + " is usual, one over the root of their number";
 }
 

@@ -127,7 +127,7 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
 
 // The expected form of a value.
 const char* expected_value(Quantity quantity) {
-  if (is_share(quantity)) return "a share from 0 to 1, or in percent, e.g. 30%";
+  if (is_share(quantity)) return "a fraction from 0 to 1, or a percentage, e.g. 30%";
   if (quantity == Quantity::exitance) return "W/m^2 without the unit, e.g. 10";
   if (quantity == Quantity::radiance) return "W/(m^2 sr) without the unit, e.g. 10";
   return expected_index;
@@ -288,9 +288,8 @@ void require_transmittance(const std::vector<Material>& materials, const std::ve
   }
   throw InputError(setting.where, "found the index of refraction " + shortest(setting.value[0]) + " for material '" +
                                       setting.material +
-                                      "', for which no transmittance is given; expected both, as the index tells how "
-                                      "a pane lets light through at an angle. Add read.settings " +
-                                      setting.material + ".transmittance=0.8, or leave the index out");
+                                      "', which has no transmittance; the index needs one\nhint: add read.settings " +
+                                      setting.material + ".transmittance=0.8, or leave out the index");
 }
 
 // Newell's formula: the scene is not repaired yet.
@@ -343,7 +342,7 @@ std::string note_on_rest(const Scene& scene, const std::vector<bool>& stays) {
   }
   return std::to_string(faces) + (faces == 1 ? " face of " : " faces of ") + std::to_string(groups.size()) +
          (groups.size() == 1 ? " object, " : " objects, ") + rounded(100 * area / all, 2) +
-         " % of the area, do not take part, as asked";
+         " % of the area, are left out as requested";
 }
 
 }  // namespace
@@ -422,7 +421,7 @@ Scene with_chosen_faces(Scene scene, const FaceChoice& choice, const std::string
     stays.push_back((choice.only.empty() || only(polygon)) && !leave_out(polygon));
   if (std::find(stays.begin(), stays.end(), true) == stays.end())
     throw InputError(where + (choice.leave_out.empty() ? ".only" : ".leave_out"),
-                     "found no face that stays; expected one at least");
+                     "no face remains; expected at least one");
   if (std::find(stays.begin(), stays.end(), false) == stays.end()) return scene;
   scene.diagnostics.push_back({DiagnosticCode::reduced_model, note_on_rest(scene, stays)});
   std::vector<Polygon> polygons;

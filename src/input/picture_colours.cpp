@@ -83,7 +83,7 @@ constexpr const char* unknown_format = "is neither PNG, JPEG, BMP, TGA nor Radia
 std::string fault_of(PictureFormat format, const PictureBytes& bytes) {
   if (!bytes.is_cut_off()) return "cannot be decoded; is it whole?";
   // stb_image takes an old-style run, (1, 1, 1, length), for a pixel and loses the pixels of the run.
-  if (format == PictureFormat::hdr) return "has runs of the old kind, or is cut off";
+  if (format == PictureFormat::hdr) return "has old-style runs, or is cut off";
   return format == PictureFormat::tga ? "is cut off, if it is a TGA" : "is cut off";
 }
 
@@ -474,11 +474,12 @@ std::string MappedFaces::sentence(const Faces& faces, const std::string& what) c
 Diagnostics MappedFaces::notes() const {
   Diagnostics notes;
   if (without_.count > 0)
-    notes.push_back({DiagnosticCode::simplified_picture,
-                     sentence(without_, "faces whose corners have no good place in their picture, whose mean counts")});
+    notes.push_back(
+        {DiagnosticCode::simplified_picture,
+         sentence(without_, "faces without valid texture coordinates, which use the mean of their picture")});
   if (bent_.count > 0)
     notes.push_back({DiagnosticCode::simplified_picture,
-                     sentence(bent_, "faces over which a picture is bent, which is taken as straight")});
+                     sentence(bent_, "faces with a distorted picture, which is replaced by an undistorted one")});
   return notes;
 }
 

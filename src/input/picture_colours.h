@@ -60,8 +60,8 @@ Texture reduced(const Texture& texture, std::size_t most_texels);
 
 /// The note on partly covered materials, before their names and fractions.
 inline constexpr const char* covered_note =
-    "surfaces cut out by pictures are there in part, every face by the share that its whole picture covers; no "
-    "error bar holds where its holes are";
+    "surfaces cut out by pictures are partly transparent, each face by the fraction that its whole picture covers; "
+    "error bars do not include the effect of hole positions";
 
 /// A picture as a mask of a surface.
 struct PictureMask {

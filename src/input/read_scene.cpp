@@ -64,8 +64,7 @@ Scene in_asked_bands(Scene scene, const std::vector<double>& edges_nm) {
   const double error = colour_error(scene, edges_nm);
   scene = in_wavelength_bands(std::move(scene), edges_nm);
   scene.band_choice = BandChoice{
-      true,
-      has + "; " + bands_in_words(number) + " are asked for, colours are off by up to " + rounded(error, 2) + " dE00",
+      true, has + "; " + bands_in_words(number) + " requested; color errors are at most " + rounded(error, 2) + " dE00",
       "the solution has " + bands_in_words(number) + " instead of 3"};
   return scene;
 }
@@ -75,10 +74,10 @@ Scene in_needed_bands(Scene scene, double color_error) {
   const BandsWithError chosen = bands_within(scene, color_error);
   const std::size_t number = chosen.edges_nm.size() - 1;
   scene = with_alike_bands_joined(in_wavelength_bands(std::move(scene), chosen.edges_nm));
-  std::string reason = has + "; with " + bands_in_words(number) + " colours are off by up to " +
-                       rounded(chosen.color_error, 2) + " dE00, " + shortest(color_error) + " is asked for";
+  std::string reason = has + "; with " + bands_in_words(number) + " color errors are at most " +
+                       rounded(chosen.color_error, 2) + " dE00, the limit is " + shortest(color_error);
   if (scene.bands.size() < number)
-    reason += "; nothing tells some of them apart, so that " + bands_in_words(scene.bands.size()) + " remain";
+    reason += "; equal ones are merged, and " + bands_in_words(scene.bands.size()) + " remain";
   scene.band_choice =
       BandChoice{true, std::move(reason), bands_in_words(scene.bands.size()) + " instead of 400, one for each nm"};
   return scene;
@@ -92,8 +91,8 @@ Scene with_bands(Scene scene, const BandsAsked& asked) {
   if (!asked.rgb) return in_needed_bands(std::move(scene), asked.color_error);
   const std::string has = what_has_spectra(scene);
   scene = in_rgb(std::move(scene));
-  scene.band_choice = BandChoice{false, has + "; linear RGB is asked for, in which they count by their colours",
-                                 "3 bands; colours of light that is reflected more than once may be off"};
+  scene.band_choice = BandChoice{false, has + "; linear RGB is requested, which uses only their colors",
+                                 "3 bands; colors of light after several reflections may be wrong"};
   return scene;
 }
 
@@ -443,7 +442,7 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   if (are_of_wavelengths(bands_of(scene)) && asks_for_new_light(options))
     scene.diagnostics.push_back(
         {DiagnosticCode::simplified_light,
-         "new light is spread over the bands as its linear RGB under D65, or as the lamp's was; "
+         "the spectrum of new light follows from its linear RGB under D65, or is that of the lamp; "
          "reflectances per band stay averaged over the light of the stored solution"});
   check_limits(scene);
   return scene;

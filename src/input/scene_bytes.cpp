@@ -118,7 +118,7 @@ TexturePointer read_texture(MessageReader& in) {
   texture.height = in.plain<std::uint32_t>();
   texture.texels = in.texels();
   if (texture.texels.empty() || texture.texels.size() != std::uint64_t{texture.width} * texture.height)
-    throw std::runtime_error("a picture has not the size that it says");
+    throw std::runtime_error("the size of a picture is wrong");
   return std::make_shared<const Texture>(std::move(texture));
 }
 

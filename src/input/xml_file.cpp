@@ -79,7 +79,7 @@ XmlFile read_xml_file(const std::filesystem::path& file, const std::string& wher
       xml.document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result)
     throw InputError(at_line(file, line_at_offset(xml.line_starts, result.offset)),
-                     "is no good XML: " + std::string(result.description()) + "\nhint: export it again");
+                     "is not valid XML: " + std::string(result.description()) + "\nhint: export it again");
   return xml;
 }
 

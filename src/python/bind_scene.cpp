@@ -64,8 +64,9 @@ void bind_material(py::module_& module) {
   bind_spectrum(type, "reflectance", &Material::reflectance, "diffuse, 0 to 1");
   bind_spectrum(type, "exitance", &Material::exitance, "self-emitted, W/m^2: pi times the emitted radiance");
   bind_spectrum(type, "transmittance", &Material::transmittance,
-                "straight through at normal incidence, 0 to 1; empty: opaque");
-  bind_spectrum(type, "specular_reflectance", &Material::specular_reflectance, "as of a mirror, 0 to 1; empty: none");
+                "direct transmittance at normal incidence, 0 to 1; empty: opaque");
+  bind_spectrum(type, "specular_reflectance", &Material::specular_reflectance,
+                "specular (mirror) reflectance, 0 to 1; empty: none");
   bind_spectrum(type, "diffuse_transmittance", &Material::diffuse_transmittance,
                 "out of the other side, 0 to 1; empty: none");
   type.def_readwrite("index", &Material::index, "of refraction, 1 or more");
@@ -109,7 +110,7 @@ void bind_scene(py::module_& module) {
   bind_material(module);
   // The dynamic attributes hold the reading options, see scene.py.
   py::class_<Scene, ScenePointer>(module, "Scene", py::dynamic_attr(),
-                                  "A model: polygons with materials, in metres. Materials may be changed.")
+                                  "A model: polygons with materials, in meters. Materials can be changed.")
       .def_property_readonly("materials", &materials_of)
       .def_readonly("groups", &Scene::groups)
       .def_readonly("file", &Scene::file)

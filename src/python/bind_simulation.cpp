@@ -69,7 +69,7 @@ SolveWith solve_by(const py::object& own, const InterruptFlag& flag) {
                                          " columns; expected one for each of " +
                                          std::to_string(problem.exitance.cols()) + " bands");
     if (!solution.irradiance.allFinite())
-      throw InputError("own solver", "found irradiances that are no finite numbers; expected a number for each patch");
+      throw InputError("own solver", "found irradiances that are not finite; expected a finite number for each patch");
     solution.radiosity = radiosity_from(problem, solution.irradiance);
     solution.direct_irradiance = transport.apply(problem.exitance);
     if (problem.direct_irradiance.size() > 0) solution.direct_irradiance += problem.direct_irradiance;
@@ -227,9 +227,9 @@ void bind_simulation(py::module_& module) {
   add(
       "area", "m^2", [](Run run) -> auto& { return run.problem.area; });
   add(
-      "vertices", "metres, vertices x 3", [](Run run) -> auto& { return run.mesh.vertices; });
+      "vertices", "meters, vertices x 3", [](Run run) -> auto& { return run.mesh.vertices; });
   add(
-      "centroid", "metres, patches x 3", [](Run run) -> auto& { return run.mesh.centroid; });
+      "centroid", "meters, patches x 3", [](Run run) -> auto& { return run.mesh.centroid; });
   add(
       "normal", "unit, patches x 3", [](Run run) -> auto& { return run.mesh.normal; });
   add(

@@ -188,13 +188,13 @@ void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
     type.def_property_readonly(name, get, text);
   };
   add(
-      "vertices", "metres, vertices x 3", [](Self o) -> auto& { return o.mesh.vertices; });
+      "vertices", "meters, vertices x 3", [](Self o) -> auto& { return o.mesh.vertices; });
   add(
       "corners", corners_text, [](Self o) -> auto& { return o.mesh.corners; });
   add(
       "material", "index into Scene.materials", [](Self o) -> auto& { return o.mesh.material; });
   add(
-      "centroid", "metres, patches x 3", [](Self o) -> auto& { return o.mesh.centroid; });
+      "centroid", "meters, patches x 3", [](Self o) -> auto& { return o.mesh.centroid; });
   add(
       "area", "exposed, m^2", [](Self o) -> auto& { return o.problem.area; });
   add(
@@ -209,7 +209,7 @@ void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
 }  // namespace
 
 void bind_transport(py::module_& module) {
-  py::class_<Solution, std::shared_ptr<Solution>>(module, "Solution", "What a solver has found, and how.")
+  py::class_<Solution, std::shared_ptr<Solution>>(module, "Solution", "The result of a solver, with its history.")
       .def_property_readonly(
           "radiosity", [](const py::object& self) { return array_over(self.cast<const Solution&>().radiosity, self); })
       .def_property_readonly(
@@ -233,10 +233,8 @@ void bind_transport(py::module_& module) {
                              [](const TransportProblem& self) { return self.plan.sides.emit_from_back; })
       .def(
           "sensor_factors", &factors_of_sensors,
-          "The irradiance of each of the scene's sensors (row) by a radiosity of 1 of each patch. Other threads of "
-          "Python run meanwhile. While it works it takes about 32 bytes for each pair of patches, as each is a band of "
-          "its own: 0.35 GB were measured for 3,013 patches, and 10,000 make it 3 GB. 25 sensors took 1.3 s with 749 "
-          "patches and 2.8 s with 3,013 on two busy cores.")
+          "The irradiance of each sensor of the scene (row) for unit radiosity of each patch. Other Python threads run "
+          "meanwhile. Memory: about 32 bytes for each pair of patches, e.g. 3 GB for 10,000 patches.")
       .def("apply", &applied, "H = F B for radiosities B, patches x columns", py::arg("radiosity"))
       .def("form_factors", &factors, "F_ij from patches [begin, end) to patches [begin, end)", py::arg("begin_end"),
            py::arg("to"))

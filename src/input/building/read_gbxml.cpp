@@ -127,17 +127,17 @@ class GbxmlReader {
     }
     scene_.diagnostics.push_back(
         {DiagnosticCode::assumed_material,
-         "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
-         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as "
+         "gbXML reflectances are not read. Defaults: walls and doors 0.5, tops of floors and roofs 0.2, "
+         "their undersides and ceilings 0.8, shades 0.35\nhint: read.settings changes them, e.g. "
          "InteriorWall.reflectance=0.7"});
     if (turned_ != 0)
-      scene_.diagnostics.push_back(
-          {DiagnosticCode::north_of_file,
-           "CADModelAzimuth " + rounded(turned_) + " is left out: north is y unless a scene file says otherwise"});
+      scene_.diagnostics.push_back({DiagnosticCode::north_of_file,
+                                    "CADModelAzimuth " + rounded(turned_) +
+                                        " is ignored: north is y\nhint: the key north of a scene file changes it"});
     scene_.diagnostics =
         merged({std::move(scene_.diagnostics),
-                note_on(DiagnosticCode::assumed_material,
-                        "windows without a visible transmittance in their type have 0.7", materials_.assumed())});
+                note_on(DiagnosticCode::assumed_material, "windows whose type has no visible transmittance get 0.7",
+                        materials_.assumed())});
     return left_out_.on(std::move(scene_));
   }
 
@@ -187,7 +187,7 @@ class GbxmlReader {
     if (outline.size() < 3) return left_out_.lose("surfaces without a PolyLoop of three corners, left out", name);
     const CutOutline cut = without_openings(outline, openings, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("surfaces with openings that reach beyond them, cut within the surface", name);
-    if (!cut.is_cut) left_out_.add("surfaces without a clear area, whose openings are not cut", name);
+    if (!cut.is_cut) left_out_.add("surfaces without a computable area, whose openings are not cut out", name);
     const GbxmlSides sides = GbxmlMaterials::surface(kind.empty() ? "Surface" : kind, area_vector(outline));
     if (!cut.parts.empty()) add_polygons(surface, name, cut.parts, sides);
   }

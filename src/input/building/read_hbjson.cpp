@@ -216,8 +216,8 @@ class HoneybeeScene {
     for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
     scene_.diagnostics =
         merged({std::move(scene_.diagnostics),
-                note_on(DiagnosticCode::assumed_material,
-                        "modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown())});
+                note_on(DiagnosticCode::assumed_material, "unsupported modifiers, replaced by honeybee's generic ones",
+                        modifiers_.unknown())});
     scene_ = left_out_.on(std::move(scene_));
   }
   Scene scene() && { return std::move(scene_); }
@@ -279,7 +279,7 @@ class HoneybeeScene {
     if (outline.empty()) return;
     const CutOutline cut = without_openings(outline, holes, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("faces with openings that reach beyond them, cut within the face", name);
-    if (!cut.is_cut) left_out_.add("faces without a clear area, whose openings are not cut", name);
+    if (!cut.is_cut) left_out_.add("faces without a computable area, whose openings are not cut out", name);
     add_parts(cut.parts, item, material);
   }
 
@@ -438,7 +438,7 @@ Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
     scene.sha256 = sha256({&bytes, 1});
     return scene;
   } catch (const HbJson::exception& error) {
-    throw InputError(file.string(), "is not a good honeybee model: " + reason_of(error) + "\nhint: export it again");
+    throw InputError(file.string(), "is not a valid honeybee model: " + reason_of(error) + "\nhint: export it again");
   }
 }
 

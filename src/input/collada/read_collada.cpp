@@ -124,7 +124,7 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
       material.texture.reset();
       scene.diagnostics.push_back(
           {DiagnosticCode::unreadable_picture, "the picture " + file + " of material '" + material.name + "' " +
-                                                   colours.faults.at(file) + "; it is grey instead, reflectance 0.5"});
+                                                   colours.faults.at(file) + "; it is gray instead, reflectance 0.5"});
       continue;
     }
     const auto texture = colours.textures.find(file);
@@ -134,7 +134,7 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
   }
   scene.diagnostics =
       merged({std::move(scene.diagnostics), note_on(DiagnosticCode::simplified_picture,
-                                                    "textures of panes are replaced by their mean colour", panes)});
+                                                    "textures of panes are replaced by their mean color", panes)});
   std::vector<std::string> contents = {bytes};
   contents.insert(contents.end(), colours.digests.begin(), colours.digests.end());
   scene.sha256 = sha256(contents);
@@ -211,9 +211,9 @@ Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictu
   }
   if (!pictures.empty()) scene.inputs.resize(scene.materials.size());
   for (const auto& [m, picture] : pictures) scene.inputs[m] = picture.file;
-  scene.diagnostics =
-      merged({std::move(scene.diagnostics),
-              note_on(DiagnosticCode::simplified_part, "textures of other than diffuse colours are ignored", ignored)});
+  scene.diagnostics = merged(
+      {std::move(scene.diagnostics),
+       note_on(DiagnosticCode::simplified_part, "textures other than those of diffuse colors are ignored", ignored)});
   return scene;
 }
 

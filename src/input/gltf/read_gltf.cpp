@@ -252,7 +252,7 @@ Diagnostics notes_on_materials(const GltfModel& gltf) {
     const bool has_mean = texture_color(of, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
     return (has_mean && !has_place) || texture_color(of, material.emissiveTexture.index).has_value();
   };
-  note(DiagnosticCode::simplified_picture, "textures of lamps, panes and mirrors are replaced by their mean colour",
+  note(DiagnosticCode::simplified_picture, "textures of lamps, panes and mirrors are replaced by their mean color",
        is_used_whole);
   for (const auto& [image, fault] : gltf.picture_faults) {
     const tinygltf::Image& found = gltf.model.images[static_cast<std::size_t>(image)];
@@ -261,14 +261,14 @@ Diagnostics notes_on_materials(const GltfModel& gltf) {
         {DiagnosticCode::unreadable_picture,
          "image " + std::to_string(image) + (uri.empty() ? "" : " (" + uri.substr(0, 80) + ")") + " " + fault});
   }
-  note(DiagnosticCode::unreadable_picture,
-       "textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
-  note(DiagnosticCode::simplified_part, "metallic surfaces are simulated as matt ones of their base colour",
+  note(DiagnosticCode::unreadable_picture, "unreadable textures are ignored; only the color factor is used",
+       has_texture(false));
+  note(DiagnosticCode::simplified_part, "metallic surfaces are simulated as matt surfaces of their base color",
        is_matt_metal);
   name(DiagnosticCode::cut_out_material, covered_note, covered_shares(gltf));
-  note(DiagnosticCode::simplified_part, "transparency by textures is ignored, factors alone count", has_unknown_holes);
-  note(DiagnosticCode::simplified_part, "masks that leave nothing of a surface are ignored: it is opaque",
-       is_masked_away);
+  note(DiagnosticCode::simplified_part, "transparency by textures is ignored; only factors are used",
+       has_unknown_holes);
+  note(DiagnosticCode::simplified_part, "masks that remove a whole surface are ignored: it is opaque", is_masked_away);
   return notes;
 }
 
@@ -464,7 +464,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   for (const tinygltf::Material& read : gltf.model.materials) scene.materials.push_back(material_from(gltf, read));
   if (!gltf.model.animations.empty() || !gltf.model.skins.empty())
     scene.diagnostics.push_back(
-        {DiagnosticCode::simplified_part, "animations and skins are ignored: the model is taken as it stands"});
+        {DiagnosticCode::simplified_part, "animations and skins are ignored: the model keeps its rest pose"});
   scene = with_lost_lights(std::move(scene), gltf.model);
 
   // 2. The triangles, in meters: glTF 2.0 section 3.4 fixes the unit and that +y is up.

@@ -98,7 +98,7 @@ Spectrum linear_rgb_of(const Spectrum& values) {
 // "#ff8000"
 Spectrum of_hexadecimal(const MitsubaFile& file, const pugi::xml_node& node, const std::string& value) {
   if (value.size() != 7 || value.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-    refuse(file, node, "a colour as #ff8000");
+    refuse(file, node, "a color, e.g. #ff8000");
   const auto part = [&](std::size_t at) { return std::stoi(value.substr(at, 2), nullptr, 16) / 255.0; };
   return linear_rgb_of(rgb(part(1), part(3), part(5)));
 }
@@ -112,7 +112,7 @@ Spectrum of_pairs(const MitsubaFile& file, const pugi::xml_node& node, std::stri
     const auto wavelength = finite_number(word.substr(0, colon));
     const auto sample = colon == std::string_view::npos ? std::nullopt : finite_number(word.substr(colon + 1));
     if (!wavelength || !sample || (!samples.empty() && *wavelength <= samples.back().first))
-      refuse(file, node, "a spectrum as 400:0.1, 700:0.9, by growing wavelengths,");
+      refuse(file, node, "a spectrum with increasing wavelengths, e.g. 400:0.1, 700:0.9,");
     samples.emplace_back(*wavelength, *sample);
   }
   return rgb_of_wavelengths(samples);
@@ -127,7 +127,7 @@ MitsubaColour of_black_body(const MitsubaFile& file, const pugi::xml_node& node)
   std::vector<std::pair<double, double>> samples;
   for (double wavelength = shortest_wavelength; wavelength <= longest_wavelength; wavelength += 5)
     samples.emplace_back(wavelength, (scale.empty() ? 1 : scale[0]) * planck(wavelength, *kelvin));
-  return {rgb_of_wavelengths(samples).max(0), "a black body counts by its radiance per nm"};
+  return {rgb_of_wavelengths(samples).max(0), "a black body uses its radiance per nm"};
 }
 
 // A checkerboard color; nested textures are not allowed.
@@ -141,10 +141,10 @@ Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const
 MitsubaColour of_texture(const MitsubaFile& file, const pugi::xml_node& node) {
   const std::string kind = file.text(node, "type");
   if (const std::optional<Spectrum> mean = kind == "bitmap" ? file.picture(node) : std::nullopt)
-    return {*mean, "pictures count by their mean colour"};
-  if (kind != "checkerboard") return {rgb(0.5, 0.5, 0.5), "textures that cannot be read count as 0.5"};
+    return {*mean, "pictures are replaced by their mean color"};
+  if (kind != "checkerboard") return {rgb(0.5, 0.5, 0.5), "unreadable textures are replaced by 0.5"};
   return {(field_colour(file, node, "color0", 0.4) + field_colour(file, node, "color1", 0.2)) / 2,
-          "checkerboards count by their mean"};
+          "checkerboards are replaced by their mean"};
 }
 
 }  // namespace
@@ -247,10 +247,11 @@ std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute)
       if (is_it && (best == nullptr || known.first.size() > best->first.size())) best = &known;
     }
     if (best == nullptr)
-      throw InputError(place(node),
-                       "'" + std::string(said) +
-                           "' names what no <default> before it says\nhint: add one, e.g. <default name=\"size\" "
-                           "value=\"1\"/>");
+      throw InputError(
+          place(node),
+          "'" + std::string(said) +
+              "' names a variable without a <default> before it\nhint: add one, e.g. <default name=\"size\" "
+              "value=\"1\"/>");
     result += best->second;
     at += best->first.size();
     if (result.size() > reading_limits::text_length)
@@ -401,7 +402,7 @@ std::optional<MitsubaColour> mitsuba_colour(const MitsubaFile& file, const pugi:
   const std::string value = file.text(node, "value");
   if (!value.empty() && value[0] == '#') return MitsubaColour{of_hexadecimal(file, node, value), ""};
   if (value.find(':') != std::string::npos)
-    return MitsubaColour{of_pairs(file, node, value).max(0), "spectra count by their RGB"};
+    return MitsubaColour{of_pairs(file, node, value).max(0), "spectra are replaced by their RGB"};
   const std::vector<double> numbers = file.numbers(node, "value");
   if (numbers.size() != 1 && numbers.size() != 3) refuse(file, node, "one number, or red, green and blue,");
   const Spectrum colour =

@@ -171,7 +171,7 @@ class MaterialReader {
     } else if (is_one_of(wrappers, kind)) {
       if (static_cast<std::size_t>(depth) == reading_limits::nesting)
         throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
-      if (kind != "twosided") simplify(kind + " is left out, what it is put around counts");
+      if (kind != "twosided") simplify(kind + " is ignored; the BSDF inside it is used");
       add(file_.nested(bsdf, "bsdf"), depth + 1);
     } else if (is_one_of(glass_kinds, kind)) {
       add_glass(bsdf, kind);
@@ -201,7 +201,7 @@ class MaterialReader {
       if (!found) found = colour(bsdf, name);
     }
     const bool is_matt = kind == "diffuse" || kind == "lambertian";
-    if (!is_matt) simplify(kind + (found ? " becomes matt" : " has no reflectance that is known, 0.5 is taken"));
+    if (!is_matt) simplify(kind + (found ? " becomes matt" : " has no known reflectance; 0.5 is used"));
     read_.material.reflectance = found.value_or(rgb(0.5, 0.5, 0.5)).min(1).max(0);
   }
 

@@ -36,7 +36,7 @@ Point obj_vertex(const std::vector<std::string_view>& statement, const std::stri
     const std::optional<double> value = finite_number(statement[axis + 1]);
     if (!value) {
       throw InputError(where, "the coordinate " + quoted(statement[axis + 1]) +
-                                  " is not a finite number; expected three numbers such as 1.25 after v");
+                                  " is not a finite number; expected three numbers after v, e.g. 1.25");
     }
     point[axis] = *value;
   }
@@ -50,7 +50,7 @@ std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, 
   const std::int64_t number = whole_number_in<std::int64_t>(digits).value_or(0);
   if (number == 0) {
     throw InputError(where, "the corner " + quoted(corner) +
-                                " names no vertex; expected a whole number other than 0, such as 7, 7/2 or 7//3");
+                                " names no vertex; expected a whole number other than 0, e.g. 7, 7/2 or 7//3");
   }
   if (number > 0) return number;
   const std::int64_t counted = static_cast<std::int64_t>(vertices_above) + 1 + number;
@@ -400,7 +400,7 @@ Diagnostics notes_on_ignored(std::span<const MtlMaterial> materials) {
       [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
-  add(DiagnosticCode::simplified_picture, "map_Kd counts by the mean colour of its picture",
+  add(DiagnosticCode::simplified_picture, "map_Kd is replaced by the mean color of its picture",
       [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
   note("textures are ignored, Kd is used instead",
        [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1U : 0U) + (m.has_mask ? 1U : 0U); });

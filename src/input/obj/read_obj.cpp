@@ -128,8 +128,8 @@ std::optional<Diagnostic> problem_with(const LibraryFile& file, const std::strin
   if (file.place.empty()) {
     return Diagnostic{DiagnosticCode::missing_material_file,
                       found +
-                          "which is neither there nor beside the model; the materials that no other file defines "
-                          "are grey, reflectance 0.5"};
+                          "which is neither there nor beside the model; materials that no other file defines "
+                          "are gray, reflectance 0.5"};
   }
   if (!file.moved) return std::nullopt;
   return Diagnostic{DiagnosticCode::moved_material_file,
@@ -408,7 +408,7 @@ Diagnostics problems_with_names(const std::string& file, const ObjScan& scan, st
   if (!unknown.empty()) {
     problems.push_back({DiagnosticCode::unknown_material,
                         "usemtl names " + first_few(unknown) +
-                            ", which no material file defines; such materials are grey, reflectance 0.5",
+                            ", which no material file defines; such materials are gray, reflectance 0.5",
                         unknown.size()});
   }
   Diagnostic without{DiagnosticCode::no_material};

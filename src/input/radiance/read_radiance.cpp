@@ -359,7 +359,7 @@ class RadianceReader {
     std::optional<RadianceMaterial> material = radiance_material(modifier.kind, modifier.name, modifier.numbers);
     if (!material) {
       material = RadianceMaterial{{modifier.name, rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {}};
-      left_out_.add("materials of a kind that cannot be carried are taken for matt of reflectance 0.5",
+      left_out_.add("unsupported materials become matt with reflectance 0.5",
                     modifier.name + " (" + modifier.kind + ")");
     }
     if (!material->simplified.empty()) {

@@ -51,11 +51,11 @@ SampledSpectrum with_value(SampledSpectrum spectrum, double wavelength, double v
   if (!spectrum.wavelengths.empty() && wavelength <= spectrum.wavelengths.back()) {
     throw InputError(where, "found the wavelength " + shortest(wavelength) + " nm after " +
                                 shortest(spectrum.wavelengths.back()) +
-                                " nm; expected them to grow: sort the lines, and leave out what comes twice");
+                                " nm; expected increasing wavelengths: sort the lines and remove duplicates");
   }
   if (value < 0) {
     throw InputError(where, "found " + shortest(value) + " at " + shortest(wavelength) +
-                                " nm; expected 0 or more: put 0 where an instrument reads less than nothing");
+                                " nm; expected 0 or more: replace negative readings by 0");
   }
   if (spectrum.values.size() >= longest_spectrum)
     throw InputError(where, "found more than " + std::to_string(longest_spectrum) + " values; expected a spectrum");

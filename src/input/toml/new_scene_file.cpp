@@ -229,8 +229,8 @@ std::string sensor_tables(const Scene& scene, const NewPlaces& places) {
   if (!places.grid) text += "# No closed room was found. A sensor grid over a group of faces:\n";
   text += mark + "[[sensors]]\n" + mark + "name = " + toml_text(grid.name) + '\n' + mark +
           (grid.rooms.empty() ? "floor = " + toml_text(grid.group) : "room = " + rooms_text(grid)) + '\n' + mark +
-          "height = " + shortest(grid.height) + "      # metres above the floor\n" +
-          "# spacing = 0.5   # metres; default: EN 12464-1, by the size of the room\n" + mark +
+          "height = " + shortest(grid.height) + "      # meters above the floor\n" +
+          "# spacing = 0.5   # meters; default: EN 12464-1, by the size of the room\n" + mark +
           (grid.rooms.empty() ? "from_walls = 0.5\n\n" : "# from_walls = 0.5\n\n");
   return text;
 }
@@ -276,7 +276,7 @@ std::string new_scene_file(const Scene& scene, const NewLight& light, const NewP
                            const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
                            const std::filesystem::path& file) {
   std::ostringstream text;
-  text << "# A scene for patchlight. `patchlight help scene-file` lists all keys. Lengths are in metres.\n"
+  text << "# A scene for patchlight. `patchlight help scene-file` lists all keys. Lengths are in meters.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
        << " -o result.vtp --json result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";

@@ -21,7 +21,7 @@ Vector axis_of(const TomlValue& value) {
 Matrix rotation_of(const TomlValue& table) {
   allow_keys(table, {"axis", "degrees"});
   const Vector axis = axis_of(required(table, "axis", "an axis 'x', 'y', 'z' or [x, y, z]"));
-  return turned_about(axis, number(required(table, "degrees", "an angle, anticlockwise seen from the axis' tip")));
+  return turned_about(axis, number(required(table, "degrees", "an angle, counter-clockwise seen from the axis' tip")));
 }
 
 // One rotation, or several in order of application.

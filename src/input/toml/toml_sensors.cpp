@@ -73,8 +73,7 @@ void require_absent(const TomlValue& table, const std::vector<std::string>& keys
   for (const std::string& key : keys) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
-    throw InputError(value->where,
-                     value->name + " says nothing about sensors given by '" + kind + "'\nhint: leave it out");
+    throw InputError(value->where, value->name + " does not apply to sensors with '" + kind + "'\nhint: leave it out");
   }
 }
 
