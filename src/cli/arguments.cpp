@@ -31,7 +31,7 @@ constexpr const char* exit_status =
     "Exit status: 0 success; 1 usage; 2 input; 3 not converged or not accurate enough;\n"
     "4 memory; 5 check failed; 6 output; 130 interrupted. See patchlight help exit-status.\n";
 
-// The text in lines of up to 80 columns, each after `indent` blanks; the first one begins at the column `begin`.
+// Breaks the text into lines of at most 80 columns, each indented by `indent`; the first line starts at column `begin`.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t begin) {
   std::istringstream words(text);
   std::string result, word;
@@ -59,7 +59,7 @@ std::string head(const OptionText& text) {
   return names + (text.value.empty() ? "" : ' ' + filled_in(text.value));
 }
 
-// The texts of all options of a command, in the order of the table.
+// The texts of all options of a command, in table order.
 std::vector<const OptionText*> texts_of(const CLI::App& command) {
   const auto has = [&](const OptionText& text) {
     const std::string name(text.names.substr(0, text.names.find(',')));
@@ -111,7 +111,7 @@ std::vector<std::string_view> groups_of(const std::vector<const OptionText*>& te
   return groups;
 }
 
-// Where pages may be: installed beside the program, in a package of their own, or in the sources of a build.
+// Folders that may contain pages: installed beside the program, in a separate package, or in the sources of a build.
 std::vector<std::filesystem::path> folders_of_pages() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -120,7 +120,7 @@ std::vector<std::filesystem::path> folders_of_pages() {
           program.parent_path().parent_path() / "docs"};
 }
 
-// The page whose file has this name, in the first folder that has one; the first by name if there are several.
+// The page with this file name in the first folder that has one; the first by name if there are several.
 std::filesystem::path page_named(const std::string& topic) {
   for (const std::filesystem::path& folder : folders_of_pages()) {
     std::error_code error;
@@ -135,7 +135,7 @@ std::filesystem::path page_named(const std::string& topic) {
   return {};
 }
 
-// ": did you mean --max-edge?" if an option is at most two letters away, nothing otherwise.
+// ": did you mean --max-edge?" if an option differs by at most two letters; empty otherwise.
 std::string near_option(const CLI::App& command, const std::string& unknown) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -145,13 +145,13 @@ std::string near_option(const CLI::App& command, const std::string& unknown) {
   return nearest.empty() ? "" : ": did you mean " + nearest + "?";
 }
 
-// The hint for an option that other commands have.
+// The hint for an option of other commands.
 std::string other_option(const std::string& command, const std::string& unknown) {
   const bool is_picture = command == "render" && (unknown == "--picture" || unknown.starts_with("--picture="));
   return is_picture ? "\nhint: -o VIEW.png names the image of patchlight render" : "";
 }
 
-// Refuses words that no option or positional argument took; an unknown option is named before its value.
+// Refuses words that no option or positional argument uses; names an unknown option rather than its value.
 void require_nothing_left(const CLI::App& command, const std::string& name, std::vector<std::string> left) {
   std::erase(left, "--");  // ends the options
   if (left.empty()) return;
@@ -166,7 +166,7 @@ void require_nothing_left(const CLI::App& command, const std::string& name, std:
   throw UsageError(name + ": unexpected argument '" + left.front() + "'");
 }
 
-// The command line as one would type it again.
+// The command line, quoted for a shell.
 std::string joined(const std::vector<std::string>& words) {
   std::string line = "patchlight";
   for (std::size_t k = 1; k < words.size(); ++k) line += ' ' + shell_word(words[k]);
@@ -184,8 +184,8 @@ bool names_a_model(const std::filesystem::path& file) {
   return file != "-" && std::find(formats.begin(), formats.end(), format_of(file)) != formats.end();
 }
 
-// Refuses a file where a command is expected, with the line that may be meant: the words that were given, and without
-// options the result that is named after the file.
+// Refuses a file in place of a command. The hint repeats the words with a command and, without options, adds a result
+// named after the file.
 void refuse_file(const std::vector<std::string>& words) {
   const std::filesystem::path file = words.front();
   std::error_code error;
@@ -213,7 +213,7 @@ void require_one_command(const CLI::App& tool) {
   throw UsageError("no command given; expected one of " + list + "\nhint: patchlight --help");
 }
 
-// The commands of the tool, each with the way to finish its options.
+// Adds all commands to the tool, and returns their functions to finish parsing.
 std::map<std::string, Finish> add_commands(CLI::App& tool) {
   std::map<std::string, Finish> finish = {{"check", add_check(tool)},
                                           {"init", add_init(tool)},
@@ -237,7 +237,7 @@ Arguments parse(CLI::App& tool, const std::map<std::string, Finish>& finish, con
   require_one_command(tool);
   const CLI::App& command = *tool.get_subcommands().front();
   require_nothing_left(command, command.get_name(), tool.remaining(true));
-  // A command that has to be given something shows how, if it is given nothing.
+  // A command that requires arguments prints its short help if it has none.
   if (words.size() == 2 && command.get_name() != "selftest") return Information{short_help(command), usage_error};
   Arguments arguments = finish.at(command.get_name())();
   std::visit(
@@ -321,7 +321,7 @@ Arguments parse_arguments(int count, const char* const* values) {
   const auto help = [&](auto&& of_command) {
     return Information{tool.get_subcommands().empty() ? tool_help() : of_command(*tool.get_subcommands().front())};
   };
-  // The parsing library speaks through its own exceptions; they end here.
+  // Exceptions of the parsing library end here.
   try {
     return parse(tool, finish, words);
   } catch (const CLI::CallForHelp&) {

@@ -22,18 +22,18 @@
 
 namespace patchlight::cli {
 
-/// The command line cannot be understood; the message is one sentence that names the option.
+/// The command line is invalid; the message is one sentence that names the option.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A picture that is wanted.
+/// A requested image.
 struct PictureSettings {
   std::filesystem::path file;       ///< .png, .hdr or .exr; empty: none
   std::filesystem::path error_map;  ///< .png; empty: none
   std::optional<Camera> camera;     ///< model units
-  std::vector<std::string> views;   ///< or the names of cameras of the scene; if none, its first one
+  std::vector<std::string> views;   ///< names of cameras of the scene, instead of `camera`; empty: the first camera
   PictureColors colors = PictureColors::natural;
   PictureQuality quality = PictureQuality::draft;
   std::array<int, 2> size{800, 800};  ///< width and height, pixels
@@ -41,27 +41,26 @@ struct PictureSettings {
   int most_samples = 64;              ///< PictureOptions::most_samples
 };
 
-/// A lightmap that is wanted.
+/// A requested lightmap.
 struct LightmapSettings {
   std::filesystem::path folder;  ///< empty: none
   LightmapOptions options;
 };
 
-/// The models that a command reads, together one scene. A path that is empty stands, here and below, for a file that is
-/// not wanted.
+/// The models of a command, which form one scene. Here and below an empty path means that a file is not requested.
 struct ModelArguments {
   std::vector<std::filesystem::path> models;  ///< "-" is the standard input
   ReadOptions read;
 };
 
-/// A scene that is solved, or prepared for it.
+/// Arguments for solving a scene, or preparing it.
 struct RunArguments : ModelArguments {
   Request request;           ///< meters
   std::string command_line;  ///< for the record
   bool quiet = false;
 };
 
-/// Arguments of `patchlight solve` or `patchlight relight`; without models the scene is the one stored with the form
+/// Arguments of `patchlight solve` or `patchlight relight`. Without models the scene is the one stored with the form
 /// factors.
 struct SolveArguments : RunArguments {
   std::vector<std::filesystem::path> results;  ///< .vtp, .vtu, .ply, .glb
@@ -71,17 +70,17 @@ struct SolveArguments : RunArguments {
   PictureSettings picture;
   LightmapSettings lightmap;
 
-  std::filesystem::path form_factors;  ///< input: a folder; empty: they are computed
-  std::filesystem::path checkpoint;    ///< a folder for rows of rays while the run lasts
+  std::filesystem::path form_factors;  ///< input: a folder; empty: computed
+  std::filesystem::path checkpoint;    ///< a folder that keeps the matrix rows of the ray method during the run
 
-  std::filesystem::path points;            ///< input: where irradiance is wanted, besides the scene's sensors
-  std::optional<double> ambient_distance;  ///< m; none: results have no ambient occlusion
-  std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; none: default_points_output
-  MapOptions map;                                     ///< of those that are .svg or .png
-  std::filesystem::path default_points_output;        ///< .csv, where sensors are but no output for them is named
+  std::filesystem::path points;            ///< input: points for irradiance, in addition to the scene's sensors
+  std::optional<double> ambient_distance;  ///< m; empty: no ambient occlusion in results
+  std::vector<std::filesystem::path> points_outputs;  ///< .csv, .vtp; empty: default_points_output
+  MapOptions map;                                     ///< for outputs .svg or .png
+  std::filesystem::path default_points_output;        ///< .csv, for scenes with sensors and no named output
 
   bool solver_given = false;  ///< the user chose Request::solver
-  bool discards = false;      ///< a run that is stopped writes nothing
+  bool discards = false;      ///< an interrupted run writes nothing
   bool verbose = false;
 };
 
@@ -90,13 +89,13 @@ struct PlanArguments : RunArguments {
 };
 
 struct CheckArguments : ModelArguments {
-  std::optional<Sides> sides;              ///< whose number is wanted, if any
+  std::optional<Sides> sides;              ///< sides to count, if requested
   std::filesystem::path problems;          ///< .vtp
-  PictureSettings picture;                 ///< file, camera, views and size of it
-  std::optional<double> ambient_distance;  ///< m, of the picture
+  PictureSettings picture;                 ///< only file, camera, views and size
+  std::optional<double> ambient_distance;  ///< m, for the image
   std::filesystem::path json;              ///< .json
-  bool json_on_stdout = false;             ///< instead of the text
-  bool all = false;                        ///< lists everything, not what fits on a screen
+  bool json_on_stdout = false;             ///< instead of text
+  bool all = false;                        ///< lists everything instead of one screen
 };
 
 struct InitArguments : ModelArguments {
@@ -104,9 +103,9 @@ struct InitArguments : ModelArguments {
 };
 
 struct FormFactorArguments : RunArguments {
-  std::filesystem::path output;  ///< a folder, or a file .npy or .mtx for the matrix alone
+  std::filesystem::path output;  ///< a folder, or a .npy or .mtx file for the matrix only
   MatrixFormat format = MatrixFormat::npy;
-  std::optional<GroupBy> by;  ///< the table of groups that is wanted
+  std::optional<GroupBy> by;  ///< the table of groups, if requested
 };
 
 struct ComparisonArguments : RunArguments {
@@ -123,13 +122,14 @@ struct ConvergenceArguments : RunArguments {
 
 struct CrosscheckArguments : RunArguments {
   VerifyOptions options;
-  std::optional<double> bar;   ///< the relative standard error that every irradiance is granted; none: its error bars
+  std::optional<double> bar;   ///< allowed relative standard error of every irradiance; empty: the error bars of the
+                               ///< solution
   std::filesystem::path json;  ///< .json
 };
 
 struct SelftestArguments {
   std::filesystem::path json;   ///< .json
-  bool json_on_stdout = false;  ///< instead of the table
+  bool json_on_stdout = false;  ///< instead of a table
   int threads = 0;              ///< 0: all processors
 };
 
@@ -145,7 +145,7 @@ struct RenderArguments : ModelArguments {
   std::string command_line;  ///< for the record
 };
 
-/// A text that the user asked for: --help or --version; or the short help of a command that was given nothing.
+/// The text of --help or --version, or the short help of a command without arguments.
 struct Information {
   std::string text;
   ExitCode code = good;
@@ -155,7 +155,7 @@ using Arguments =
     std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments, FormFactorArguments,
                  ComparisonArguments, ConvergenceArguments, CrosscheckArguments, SelftestArguments, RenderArguments>;
 
-/// Understands the command line; nothing is read or written. \throws UsageError.
+/// Parses the command line without reading or writing files. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);
 
 }  // namespace patchlight::cli

@@ -35,10 +35,10 @@
 namespace patchlight::cli {
 namespace {
 
-// Of lengths and areas.
+// Significant digits of lengths and areas.
 constexpr int digits = 4;
 
-// "and 171 more (--all lists them)", or nothing.
+// "and 171 more (--all lists them)"; empty if all are shown.
 std::string rest_line(std::size_t count, std::size_t shown) {
   if (count <= shown) return {};
   return "  and " + std::to_string(count - shown) + " more (--all lists them)\n";
@@ -81,20 +81,20 @@ std::string sides_lines(const SceneReport& report) {
   return text.str();
 }
 
-// "; specular reflectance 0.9, 0.9, 0.9" of a mirror; nothing without any.
+// "; specular reflectance 0.9, 0.9, 0.9" for a mirror; empty for others.
 std::string part(const char* name, const Spectrum& values) {
   if (!(values > 0).any()) return {};
   return std::string("; ") + name + ' ' + listed(values, ", ");
 }
 
-// The width of a column with these names, at most 40.
+// The width of a column with these names, at most 40 characters.
 std::size_t width_of(const std::vector<std::string>& names) {
   std::size_t width = 0;
   for (const std::string& name : names) width = std::max(width, shown_name(name).size());
   return std::min<std::size_t>(width, 40);
 }
 
-// The largest first. The lists of materials, objects, rooms and problems fit on one screen unless all are asked for.
+// Largest first. Without --all the lists of materials, objects, rooms and problems fit on one screen.
 std::string material_lines(const SceneReport& report, bool all) {
   std::vector<MaterialFacts> materials = report.materials;
   if (!all && materials.size() > 12) {
@@ -118,7 +118,7 @@ std::string material_lines(const SceneReport& report, bool all) {
   return text.str() + rest_line(report.materials.size(), materials.size());
 }
 
-// The largest objects or groups first, which --only and --exclude take. Of IFC, classes with a pattern for each.
+// The largest objects or groups, as accepted by --only and --exclude. For IFC, classes with a pattern for each.
 std::string object_lines(const SceneReport& report, bool all) {
   const std::vector<ObjectFacts>& objects = all ? report.objects : report.classes;
   if (objects.size() < 2) return {};
@@ -135,7 +135,7 @@ std::string object_lines(const SceneReport& report, bool all) {
   return text.str() + rest_line(objects.size(), shown);
 }
 
-// The largest rooms first.
+// Largest first.
 std::string room_lines(const Scene& scene, bool all) {
   if (scene.rooms.empty()) return {};
   std::vector<std::pair<double, const NamedRoom*>> rooms;
@@ -190,7 +190,7 @@ std::string daylight_lines(const Scene& scene) {
   return text.str();
 }
 
-// A text of the library, with its hints on lines of their own.
+// A message of the library, with hints on separate lines.
 std::string with_hints(const std::string& text) {
   const std::string mark = "\nhint: ";
   const std::size_t at = text.find(mark);
@@ -221,7 +221,7 @@ const char* verdict(const SceneReport& report) {
   return has_errors ? "can be solved, but parts are lost: see the errors" : "can be solved";
 }
 
-// The command that comes next.
+// The command for the next step.
 std::string next_line(const CheckArguments& arguments, const SceneReport& report, bool needs_sensors) {
   if (arguments.models.front() == "-") return {};
   std::string models;
@@ -239,7 +239,7 @@ std::string next_line(const CheckArguments& arguments, const SceneReport& report
   return "next: patchlight " + command + (has_more ? " and the options given here" : "") + '\n';
 }
 
-// From the camera that is asked for, else the first of the scene, if there is one.
+// Renders from the requested camera, else the first of the scene, if any.
 void write_model_picture(const CheckArguments& arguments, const Scene& scene) {
   const double distance = arguments.ambient_distance.value_or(bounds(scene).sizes().mean() / 10);
   const PictureOptions options{.camera = camera_for(arguments.picture, scene),
@@ -253,10 +253,10 @@ const char* word_for(const Decision& decision) {
   return decision.simulate ? "on" : "off";
 }
 
-// Those that say which surfaces take part, and no property of light.
+// True for effects that select the simulated surfaces, rather than a property of light.
 bool is_of_surfaces(Effect effect) { return effect == Effect::reach || effect == Effect::backs; }
 
-// Two lines for each: the fact that decides, and its cost or saving.
+// Two lines per effect: the deciding fact, and the cost or saving.
 std::string lines_of(const std::vector<Decision>& decisions, bool of_surfaces) {
   std::ostringstream text;
   for (const Decision& decision : decisions) {
@@ -279,7 +279,7 @@ std::string cost_lines(const ExpectedCost& cost) {
          rounded(cost.direct_light_seconds, 2) + ", closure and solution " + rounded(cost.solve_seconds, 2) + '\n';
 }
 
-// The costs that the estimate leaves out.
+// Costs outside the estimate.
 std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
   const auto patches = static_cast<PatchIndex>(cost.patches);
   const bool has_second_mesh = makes_second_mesh(plan, patches) && fits_as_next_mesh(patches, 1, plan);
@@ -288,7 +288,7 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
                                   : counted(cost.sensors, "sensor") + " of about " + rounded(cost.sensor_seconds, 2) +
                                         (cost.of_first_mesh ? " processor seconds or more, " : " processor seconds, ");
   return std::string("in addition: ") + (has_error_bars(plan.accuracy) ? "error bars, " : "") +
-         (has_second_mesh ? "a second mesh where the first errs by more than 2 %, " : "") + sensors +
+         (has_second_mesh ? "a second mesh if the error of the first is above 2 %, " : "") + sensors +
          "requested images and pages" +
          (plan.accuracy.seconds ? "; --time-limit does not include sensors and images" : "") + "\n";
 }
@@ -340,7 +340,7 @@ ExitCode plan(const PlanArguments& arguments) {
   print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"
-            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches: on, they take part\n"
+            << lines_of(plan.decisions, false) << "sides of surfaces that no light reaches (on: simulated)\n"
             << lines_of(plan.decisions, true) << cost_lines(cost) << further_costs(plan, cost) << std::flush;
   return good;
 }

@@ -6,7 +6,7 @@
 
 #include <span>
 
-// The commands. All may throw InputError, OutputError, MemoryError and Cancelled.
+// The commands. All may throw InputError, OutputError, MemoryError and `Cancelled`.
 namespace patchlight::cli {
 
 /// Reports the contents of a model and its problems. Returns input_error when the model cannot be solved.
@@ -15,8 +15,7 @@ ExitCode check(const CheckArguments& arguments);
 /// Writes a commented scene file for models.
 ExitCode init(const InitArguments& arguments);
 
-/// Reads, solves, and writes all results at the end, each of them whole. `patchlight relight` is a solve without a
-/// model.
+/// Reads, solves and writes all results at the end, each file atomically. `patchlight relight` solves without a model.
 ExitCode solve(const SolveArguments& arguments);
 
 /// Renders images of a saved solution.
@@ -25,7 +24,7 @@ ExitCode render(const RenderArguments& arguments);
 /// A dry run: prints the effects that would be simulated, the reasons, and the expected cost.
 ExitCode plan(const PlanArguments& arguments);
 
-/// Solves, traces paths, and prints where they differ most. Returns validation_failed when they disagree.
+/// Solves, traces paths, and prints the largest differences. Returns validation_failed when they disagree.
 ExitCode crosscheck(const CrosscheckArguments& arguments);
 
 /// Writes the form factors between the patches of a model.
@@ -37,7 +36,7 @@ ExitCode compare_solvers(const ComparisonArguments& arguments);
 /// Measures the cost of accuracy.
 ExitCode convergence(const ConvergenceArguments& arguments);
 
-/// Prints a table of cases with known answers. Returns validation_failed when one of them lies outside its error bar.
+/// Prints a table of cases with known answers. Returns validation_failed when one lies outside its error bar.
 ExitCode selftest(const SelftestArguments& arguments, std::span<const ValidationCase> cases);
 
 }  // namespace patchlight::cli

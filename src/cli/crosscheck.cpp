@@ -25,7 +25,7 @@ std::string position(const Point& point) {
   return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
 }
 
-// A checked patch in the band where it differs most.
+// A checked patch in the band with the largest difference.
 struct Difference {
   Eigen::Index row = 0;
   Eigen::Index band = 0;
@@ -45,7 +45,7 @@ std::vector<Difference> worst_first(const SolvedAndTraced& compared) {
   return differences;
 }
 
-// Beyond 100 standard errors the number no longer matters.
+// Larger numbers than 100 standard errors have no further meaning.
 std::string standard_errors(double z, int places) {
   if (std::abs(z) > 100) return z > 0 ? "> 100" : "< -100";
   return rounded(z, places);
@@ -71,35 +71,35 @@ std::string table(const Scene& scene, const PatchMesh& mesh, const Verification&
   return text_table(rows);
 }
 
-// Of the values that are numbers.
+// Root mean square over the finite values.
 double root_mean_square(const Field& values) {
   const Field squares = values.isFinite().select(values.square(), 0);
   return std::sqrt(squares.sum() / static_cast<double>(std::max<Eigen::Index>(1, values.isFinite().count())));
 }
 
-// Without the solver's where no bound is known: an infinite one would grant everything.
+// The error bars, without the solver's part if it has no bound: an infinite bar would allow any result.
 Field known_bars(const ErrorBars& bars) {
   if (bars.solver.allFinite()) return bars.total();
   return (bars.mesh.square() + bars.form_factor.square()).sqrt();
 }
 
-// The error that the irradiances may have.
+// Describes the allowed error of the irradiances.
 std::string bars(const std::optional<double>& bar, const Simulation& simulation) {
   if (bar) return "a bar of " + percent(*bar) + " % of the irradiance, or of its mean where that is larger";
   const AccuracyStep& errors = simulation.accuracy.back();
   const bool solver_known = std::isfinite(errors.solver);
   return "the error bars of the patches, " + percent(known_error(errors), 2) + " % as a whole (mesh " +
          percent(errors.mesh, 2) + ", form factors " + percent(errors.form_factor, 2) + ", solver " +
-         (solver_known ? percent(errors.solver, 1) : "not known and not in them") + ")";
+         (solver_known ? percent(errors.solver, 1) : "unknown and not included") + ")";
 }
 
-// How far a patch is off, in the band in which that is most. Nothing where the paths have met next to no light.
+// The typical error of a patch in the band where it is largest. Empty if the paths found almost no light.
 std::string typical_error(const VerifiedPart& part) {
   Eigen::Index band = 0;
   const double error = part.error.maxCoeff(&band);
   const double noise = part.noise[band];
   if (!std::isfinite(error) || !std::isfinite(noise)) return {};
-  // Twice the random error of the square.
+  // twice the random error of the square
   const double told = 2 * noise * noise * std::sqrt(2 / static_cast<double>(part.rows.size()));
   const bool is_hidden = error * error < told;
   return "typical error of a patch " +
@@ -107,12 +107,12 @@ std::string typical_error(const VerifiedPart& part) {
                     : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out");
 }
 
-// A line with a figure, and behind it its meaning where that is wanted.
+// A line with a figure, followed by its meaning if requested.
 std::string figure(const std::string& what, const char* tells, bool explained) {
   return what.empty() ? "" : "  " + what + (explained ? std::string(": ") + tells : "") + '\n';
 }
 
-// The differences of a part: first the bars, then the deviations found.
+// The differences of a part: first the bars, then the deviations.
 std::string figures_of(const VerifiedPart& part, bool explained) {
   Eigen::Index band = 0;
   part.offset.abs().maxCoeff(&band);
@@ -124,20 +124,18 @@ std::string figures_of(const VerifiedPart& part, bool explained) {
           << static_cast<double>(part.rows.size()) - dark << " patches in the worst band"
           << (dark > 0 ? ", and " + std::to_string(std::lround(dark)) + " that are dark in both" : std::string());
   return (part.name == "all" ? "" : part.name + ", " + std::to_string(part.rows.size()) + " patches\n") +
-         figure("bars " + percent(part.width, 2) + " % of the light",
-                "how far the irradiance of these patches is stated to be off", explained) +
-         figure(typical_error(part), "how far each by itself is off, about the bars or less where the answer is right",
+         figure("bars " + percent(part.width, 2) + " % of the light", "stated error of the irradiance of these patches",
                 explained) +
-         figure(mean.str(),
-                "how far all together are off, less than each where some are too bright and others too dark",
+         figure(typical_error(part), "error of each patch, about the bars or less if the solution is correct",
                 explained) +
+         figure(mean.str(), "error of the sum, smaller if too bright and too dark patches cancel", explained) +
          figure(
              squares.str(),
-             "differences over bars and noise, squared and summed, about one a patch or less where the answer is right",
+             "sum of squared differences over bars and noise, about one per patch or less if the solution is correct",
              explained);
 }
 
-// One line for rooms or sensors, with the one that differs most.
+// One line for rooms or sensors, with the largest difference.
 std::string figures_of(const VerifiedFamily& family) {
   const VerifiedPart& part = family.part;
   const SolvedAndTraced& compared = family.compared;
@@ -162,7 +160,7 @@ std::string figures(const Verification& verification) {
   for (const VerifiedFamily& family : verification.families) text += figures_of(family);
   return text + "z by the noise of the paths alone: root mean square " +
          standard_errors(root_mean_square(deviations_by_noise(verification)), 3) +
-         " (1 is noise; above it the paths see errors, which the bars have to cover)\n";
+         " (1 is noise; larger values are errors, which the bars must cover)\n";
 }
 
 std::string sides_left_out(const Scene& scene, const Verification& verification) {
@@ -184,7 +182,7 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
   return text.str();
 }
 
-// Where light is spread too far the patches that were checked need not show it.
+// Lamps close to large patches spread light too far; the checked patches may not show it.
 std::string close_lamps(const Scene& scene, const Simulation& simulation, Verdict verdict) {
   if (notes_on_close_lamps(scene, simulation.world->between_patches(), simulation.plan.max_edge).empty()) return {};
   const std::string near = "the lamps that are nearer to a surface than its patches are large";
@@ -209,7 +207,7 @@ std::string verdict(const Verification& verification, const std::string& granted
   return text.str();
 }
 
-// The whole answer: verdict, extent of the check, figures, and the patches that differ most.
+// The complete report: verdict, extent of the check, figures, and the patches with the largest differences.
 std::string answer(const Scene& scene, const Simulation& simulation, const Verification& verification,
                    const std::string& verdict, double seconds) {
   std::ostringstream text;
@@ -229,7 +227,7 @@ std::string answer(const Scene& scene, const Simulation& simulation, const Verif
   return text.str();
 }
 
-// All of it, or with --quiet a verdict that is not good.
+// Prints the report; with --quiet only a verdict that is not good.
 void tell(const CrosscheckArguments& arguments, const Scene& scene, const Simulation& simulation,
           const Verification& verification, double seconds) {
   const std::string said =

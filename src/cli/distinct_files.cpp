@@ -13,7 +13,7 @@ namespace {
 
 using std::filesystem::path;
 
-// A name in a folder when there is no such file, else an empty name.
+// Device, inode and an empty name; for a missing file, those of its folder and its name.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 std::optional<Identity> identity_of(const path& file, const std::string& name = {}) {

@@ -28,7 +28,7 @@ bool is_one_file(const FormFactorArguments& arguments) {
   return arguments.output.extension() == ".npy" || arguments.output.extension() == ".mtx";
 }
 
-// More groups than fit on a line are left to the CSV.
+// Prints only as many groups as fit on a line; the CSV has all.
 std::string table(const GroupFactors& groups) {
   if (groups.names.size() > 12) {
     return std::to_string(groups.names.size()) + " " + name_of(groups.by) + "s: too many to print\n";
@@ -47,15 +47,15 @@ std::string table(const GroupFactors& groups) {
   return text.str();
 }
 
-// The reference of a group's figures.
+// A note on the definition of the group factors for faces with two simulated sides.
 Diagnostics note_on_groups(const KeptSides& sides) {
   std::size_t both = 0;
   for (std::size_t p = 0; p < sides.front.size(); ++p) both += sides.front[p] != 0 && sides.back[p] != 0 ? 1 : 0;
   if (both == 0) return {};
   return {{DiagnosticCode::both_sides,
            "both sides of " + std::to_string(both) +
-               " faces take part: the form factor from a group is a share of what leaves all of its sides together, "
-               "half of that from the fronts where backs see nothing; --sides front leaves the backs out",
+               " faces are simulated: the form factor from a group is a fraction of the light from all of its sides, "
+               "half of that from the fronts if the backs see nothing\nhint: --sides front leaves the backs out",
            both}};
 }
 
@@ -72,13 +72,13 @@ std::string summary(const Scene& scene, const FormFactors& form_factors) {
   return text.str();
 }
 
-// The output about form factors that are written.
+// Facts about written form factors.
 struct Written {
   Diagnostics notes;
   std::string summary;
 };
 
-// Of either kind of form factors.
+// Writes form factors of either method.
 template <class Found>
 Diagnostics notes_on(const FormFactorArguments& arguments, const Scene& scene, const Found& found) {
   Diagnostics all = merged({remarks_of(scene), found.plan.sides.notes, found.plan.notes, found.notes});
@@ -129,7 +129,7 @@ std::string table(const Comparison& comparison) {
   return text_table(rows);
 }
 
-// Those of the spectral radius, at most six.
+// Known digits of the spectral radius, at most six.
 int known_digits(const Comparison& comparison) {
   const double share = comparison.spectral_radius_error / comparison.spectral_radius;
   return share > 1e-6 ? std::max(1, static_cast<int>(-std::log10(share))) : 6;
@@ -144,13 +144,13 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
     if (run.contestant.solver != Solver::jacobi || !std::isfinite(run.rate)) continue;
     text << ", which is Jacobi's rate; observed " << rounded(run.rate, 6);
   }
-  text << "\niterations of what shoots: shots / patches; applications of the matrix, or as many rows; rate: of the "
-          "error "
-          "per iteration\n";
+  text << "\niterations of shooting solvers: shots / patches; applications: of the matrix, or as many rows; rate: of "
+          "the "
+          "error per iteration\n";
   return text.str();
 }
 
-// The solvers that have given up. Rows on demand are not closed: that they do not come as near is no failure.
+// Solvers that did not converge. Rows on demand have no closure, so that a larger deviation is no failure.
 std::string not_reached(const Comparison& comparison) {
   std::string names;
   for (const SolverRun& run : comparison.runs) {
@@ -174,7 +174,7 @@ void write_page_of_comparison(const ComparisonArguments& arguments, const Scene&
                               .comparison = &comparison});
 }
 
-// An error that is not above what the reference is good to has a question mark.
+// Marks an error with a question mark if it is within the error of the reference.
 std::string judged(double error, const Study& study) {
   return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");
 }
@@ -202,11 +202,11 @@ std::string facts(const Scene& scene, const Study& study) {
     text << "the closed form: a closed room with E = 1 - rho";
   } else {
     text << "a solution with " << reference.patches << " patches and " << reference.samples << " samples ("
-         << rounded(reference.cpu_seconds) << " CPU seconds), itself good to " << percent(reference.bar) << " %";
+         << rounded(reference.cpu_seconds) << " processor seconds) with an error of " << percent(reference.bar) << " %";
   }
   text << "\nerror: of the patch means; display: of the field, constant on each patch; own: due to the swept quantity "
-          "alone; *: on the Pareto front of error and CPU seconds\n"
-       << (reference.bar > 0 ? "?: not known, as the reference is no better than that\n" : "")
+          "alone; *: on the Pareto front of error and processor seconds\n"
+       << (reference.bar > 0 ? "?: not significant, since the reference has a similar error\n" : "")
        << "at the finest setting: mesh " << percent(study.parts.mesh) << " %, form factors "
        << percent(study.parts.form_factors) << " %, solver " << percent(study.parts.solver) << " %\n";
   return text.str();

@@ -8,14 +8,14 @@
 namespace patchlight::cli {
 namespace {
 
-// A name of an earlier version. An option may stand with one of its values.
+// A name of an earlier version; an option may include one of its values.
 struct FormerName {
-  std::string_view command;  // the present name of the command that had it; empty: of any
+  std::string_view command;  // current name of the command that had it; empty: any
   std::string_view former;
-  std::string_view present;  // empty: it is left out
+  std::string_view present;  // empty: removed without replacement
 };
 
-// A value goes before the option alone. Remove this table with version 0.2.
+// Options with a value come before those without. Remove this table with version 0.2.
 constexpr std::array former_commands = {
     FormerName{"", "validate", "selftest"},       FormerName{"", "verify", "crosscheck"}, FormerName{"", "new", "init"},
     FormerName{"", "compare", "compare-solvers"}, FormerName{"", "study", "convergence"},
@@ -45,12 +45,12 @@ constexpr std::array former_options = {
     FormerName{"", "--quality", "--picture-quality"},
 };
 
-// "--skip" and "closure", from one word with a sign of equality or from two words.
+// "--skip" and "closure", from one word with "=" or from two words.
 struct Typed {
   std::string option;
-  std::string value;      // empty without one
+  std::string value;      // empty if absent
   bool in_one = false;    // "--skip=closure"
-  std::size_t words = 1;  // how many words it takes if the value counts
+  std::size_t words = 1;  // number of words, including the value
 };
 
 Typed typed_at(const std::vector<std::string>& words, std::size_t k) {
@@ -74,7 +74,7 @@ std::string with_american_spelling(std::string text) {
   return text;
 }
 
-// Options and names of effects; all other values stay as they are.
+// Replaces `colour` in options and names of effects only.
 void spell_color(std::vector<std::string>& words, std::size_t k) {
   const std::size_t end = std::min(words[k].find('='), words[k].size());
   words[k] = with_american_spelling(words[k].substr(0, end)) + words[k].substr(end);

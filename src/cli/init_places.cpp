@@ -33,9 +33,9 @@ namespace {
 
 constexpr double work_plane = 0.8;  // meters above the floor
 constexpr double eye_height = 1.6;  // meters
-constexpr double bad = -1;          // in the place of a height
+constexpr double bad = -1;          // marks an invalid place, instead of a height
 
-// With a ground under it, four times as wide, for models of rooms without slabs.
+// Adds a ground four times as wide as the scene, for models of rooms without slabs.
 Scene over_ground(Scene scene) {
   const Box box = bounds(scene);
   const double size = box.diagonal().norm();
@@ -49,7 +49,7 @@ Scene over_ground(Scene scene) {
   return scene;
 }
 
-// A scene in which places are tried.
+// A scene for testing places.
 class Trial {
  public:
   explicit Trial(const Scene& scene)
@@ -63,7 +63,7 @@ class Trial {
 
   const Scene& scene() const { return scene_; }
 
-  // Per place, group after group, the height over the first face below, meters; or `bad`.
+  // For each place of all groups in sequence: height above the next face below, meters, or `bad`.
   std::vector<double> heights(const std::vector<SensorGroup>& groups) const {
     Scene scene = scene_;
     scene.sensors = groups;
@@ -90,7 +90,7 @@ class Trial {
     return faces_.occluded(way)[0] == 0;
   }
 
-  // How much glass is near and in sight, m^2 / m^2.
+  // Visible glass near a point: the sum of area / (distance^2 + area).
   double glass_near(const Point& point) const {
     std::vector<Segment> ways;
     for (const PolygonIndex p : openings_)
@@ -111,8 +111,7 @@ class Trial {
   std::vector<PolygonIndex> openings_;
 };
 
-// A grid that was tried: so many places are good, and so many of these have the floor itself below them. Half of the
-// places are enough.
+// A tested grid: the number of good places, and of those directly above the floor. Half of the places must be good.
 struct TriedGrid {
   std::size_t places = 0;
   std::size_t good = 0;
@@ -152,13 +151,13 @@ FloorGrid standard_work_plane() {
   return grid;
 }
 
-// Nothing over a floor with more than 20,000 places, as in a model whose unit is wrong.
+// Empty for a floor with more than 20,000 places, e.g. in a model with a wrong unit.
 SensorGroup grid_to_try(const Floor& floor, const FloorGrid& grid, const std::vector<Solid>& solids) {
   const bool is_sensible = !floor.outlines.empty() && most_cells(floor, standard_grid(floor)) <= 2e4;
   return is_sensible ? grid_over(floor, grid, solids).group : SensorGroup();
 }
 
-// The rooms with places for sensors.
+// Sensors for the rooms that have places for them.
 NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
   const Scene& scene = trial.scene();
   FloorGrid grid = standard_work_plane();
@@ -188,7 +187,7 @@ NewPlaces sensors_in_rooms(const Trial& trial, LeftOut& notes) {
   return places;
 }
 
-// The floor of a group that has most area below closed rooms, of the 50 largest.
+// Sensors over the group with the largest floor area below closed rooms, among the 50 largest.
 NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> floors, LeftOut& notes) {
   FloorGrid grid = standard_work_plane();
   grid.from_walls = 0.5;
@@ -213,7 +212,7 @@ NewPlaces sensors_over_group(const Trial& trial, std::span<const NamedFloor> flo
   return places;
 }
 
-// Places for an eye in a room, away from walls.
+// Camera positions in a room, away from walls.
 std::vector<Point> eyes_in(const Trial& trial, const NamedFloor& place) {
   const double spacing = std::max(0.5, std::sqrt(area_of(place.floor)) / 20);
   const GridSize size{spacing, standard_grid(place.floor).from_walls};
@@ -227,7 +226,7 @@ std::vector<Point> eyes_in(const Trial& trial, const NamedFloor& place) {
   return eyes;
 }
 
-// A view towards the glass. Eye and target are the two places of the room that see each other from farthest apart.
+// A view toward the glass. Eye and target are the most distant pair of positions with a free line of sight.
 std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
   struct Way {
     double length = 0;
@@ -243,11 +242,11 @@ std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
       if (is_towards_glass) ways.push_back({(eyes[to] - eyes[from]).norm(), from, to});
     }
   }
-  // Lengths that are equal up to rounding keep their order.
+  // Rounding keeps the order of equal lengths.
   const auto rounded_length = [](const Way& way) { return std::llround(1e6 * way.length); };
   std::stable_sort(ways.begin(), ways.end(),
                    [&](const Way& a, const Way& b) { return rounded_length(a) > rounded_length(b); });
-  const Vector lower = (eye_height - 1.3) * place.floor.up;  // the target lies 1.3 m above the floor
+  const Vector lower = (eye_height - 1.3) * place.floor.up;  // the target is 1.3 m above the floor
   for (const Way& way : ways) {
     const Camera camera{eyes[way.from], eyes[way.to] - lower, 70, place.name};
     if (trial.is_in_sight(camera.eye, camera.target)) return camera;
@@ -255,7 +254,7 @@ std::optional<Camera> camera_in(const Trial& trial, const NamedFloor& place) {
   return std::nullopt;
 }
 
-// Three, in the twelve rooms with the largest windows first and, of equal ones, as in dark rooms, in the order given.
+// Three views, in the twelve rooms with the largest windows. Rooms with equal windows, e.g. none, keep their order.
 std::vector<Camera> cameras_in(const Trial& trial, std::vector<NamedFloor> floors) {
   std::stable_sort(floors.begin(), floors.end(),
                    [](const NamedFloor& a, const NamedFloor& b) { return a.window_area > b.window_area; });

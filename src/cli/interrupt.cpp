@@ -10,7 +10,7 @@
 namespace patchlight::cli {
 namespace {
 
-// A signal handler can reach nothing but static state.
+// A signal handler can access only static state.
 std::atomic<bool> stop_asked{false};
 std::atomic<int> last_signal{SIGINT};
 std::atomic<bool> end_asked{false};
@@ -22,7 +22,7 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 constexpr suseconds_t patience_microseconds = 500'000;
 
-// Only what is safe inside a signal handler; the line break leaves the progress line.
+// Async-signal-safe. The line break leaves the progress line.
 void say(std::string_view message) {
   if (!on_terminal) message.remove_prefix(1);
   [[maybe_unused]] const ssize_t count = write(STDERR_FILENO, message.data(), message.size());
@@ -47,7 +47,7 @@ extern "C" void ask_to_stop(int signal) {
   setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-// A signal that the caller has ignored stays so: nohup, and jobs in the background of a script.
+// A signal that the caller ignores stays ignored: nohup, and background jobs of scripts.
 void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;

@@ -155,7 +155,7 @@ std::string solution_named(const std::string& option, const std::string& text) {
   return text;
 }
 
-// The refusal without a solution, which may stand in the place of the model.
+// The error for a missing solution, which may be among the models.
 std::string without_solution(const std::vector<std::string>& models) {
   const auto is_result = [](const std::string& file) { return in_lower_case(file).ends_with(".vtp"); };
   const auto result = std::find_if(models.begin(), models.end(), is_result);

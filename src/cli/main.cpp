@@ -21,7 +21,7 @@ namespace {
 using namespace patchlight;
 using namespace patchlight::cli;
 
-// Names of earlier versions still work; a remark shows the present ones.
+// Former names still work; a remark prints the current ones.
 void remark_on_former_names(int count, const char* const* values) {
   const PresentNames names = with_present_names(count, values);
   const auto is_quiet = [](const std::string& word) { return word == "-q" || word == "--quiet"; };
@@ -51,7 +51,7 @@ ExitCode run(int count, const char* const* values) {
   return std::visit(Run{}, arguments);
 }
 
-// The limit of processes of a user or a container. TBB reports it as a runtime_error that names the function.
+// The process limit of a user or container. TBB throws a runtime_error that names the function.
 bool is_process_limit(const std::exception& error) {
   const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
   if (of_system != nullptr) return of_system->code() == std::errc::resource_unavailable_try_again;
@@ -68,9 +68,9 @@ ExitCode failed(ExitCode code, const char* what) {
 int main(int count, char** values) {
   open_standard_streams();
   watch_interrupts();
-  // A file that may not grow any further is an error of writing, not the end of the program.
+  // Exceeding the file size limit is a write error and does not end the program.
   std::signal(SIGXFSZ, SIG_IGN);
-  // A pipe that nobody reads any more, too.
+  // The same holds for a closed pipe.
   std::signal(SIGPIPE, SIG_IGN);
   StandardOutput output;
   try {

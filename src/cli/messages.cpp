@@ -22,7 +22,7 @@ std::string escaped(const char* format, unsigned code) {
   return text;
 }
 
-// The length of the UTF-8 sequence that the text begins with; 0 when it is none. Unicode 15, table 3-6.
+// Length of the UTF-8 sequence at the start of the text; 0 if invalid. Unicode 15, table 3-6.
 std::size_t sequence_length(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t length = first < 0x80   ? 1
@@ -39,7 +39,7 @@ std::size_t sequence_length(std::string_view text) {
              : 0;
 }
 
-// One character as it may appear on a terminal.
+// One character in a form that is safe for a terminal.
 std::string visible(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1 && (first < 0x20 || first == 0x7F)) return escaped("\\u%04x", first);
@@ -87,7 +87,7 @@ std::string shown_name(std::string_view name) {
   return result;
 }
 
-// Keeps what is written until it is flushed.
+// Buffers output until it is flushed.
 class StandardOutput::Buffer : public std::streambuf {
  public:
   int error_number() const { return error_number_; }
@@ -122,7 +122,7 @@ class StandardOutput::Buffer : public std::streambuf {
 };
 
 void open_standard_streams() {
-  // In this order, as open() takes the lowest number that is free. A null device opened for reading refuses writing.
+  // In this order, because open() returns the lowest free number. A null device opened for reading refuses writes.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
     const int opened = open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY);

@@ -12,7 +12,7 @@
 namespace patchlight::cli {
 namespace {
 
-// Fields with a value come before the same without one.
+// Fields with a value come before fields without one.
 const std::vector<OptionName>& usual_names() {
   static const std::vector<OptionName> names = {{"read.settings", "--set"},
                                                 {"read.up=", "--up "},
@@ -74,7 +74,7 @@ const std::vector<OptionName>& usual_names() {
 
 bool is_of_word(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_'; }
 
-// Names in a model and of files stand in quotes, or have more before or behind them.
+// Names in a model and of files are quoted, or are parts of longer words.
 bool begins_a_word(const std::string& text, std::size_t k) {
   return k == 0 || (!is_of_word(text[k - 1]) && std::string("./\\'-").find(text[k - 1]) == std::string::npos);
 }
@@ -84,7 +84,7 @@ bool ends_a_word(const std::string& text, std::size_t end) {
   return end == text.size() || (!is_of_word(text[end]) && !goes_on);
 }
 
-// The name of the field that the text has at `begin`, if any.
+// The name of the field at `begin`, if any.
 const OptionName* name_at(const std::string& text, std::size_t begin, std::span<const OptionName> names) {
   if (!begins_a_word(text, begin)) return nullptr;
   const auto found = std::find_if(names.begin(), names.end(), [&](const OptionName& name) {

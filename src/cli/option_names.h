@@ -8,26 +8,26 @@
 
 namespace patchlight::cli {
 
-/// A field of the library, perhaps with its value, and the option that fills it.
+/// A field of the library, optionally with its value, and the corresponding option.
 struct OptionName {
   std::string field;
   std::string option;
 };
 
-/// A message of the library with the options in place of its fields: "--disable sun" for "effects.skip=sun". `other`
-/// takes precedence over the names that most commands have.
+/// Replaces library fields in a message by options: "effects.skip=sun" becomes "--disable sun". `other` has precedence
+/// over the usual names.
 std::string with_option_names(const std::string& text, std::span<const OptionName> other = {});
 
-/// check() for a command that calls some options otherwise. \throws UsageError.
+/// check() for a command with other option names. \throws UsageError.
 void check_with_names(const Request& request, std::span<const OptionName> other);
 
-/// A command line in which earlier names of commands and options are replaced by the present ones.
+/// A command line with former names of commands and options replaced by the current ones.
 struct PresentNames {
-  std::vector<std::string> words;    ///< the program first, as in main()
-  std::vector<std::string> remarks;  ///< "--force is now --enable", one for each name that was replaced
+  std::vector<std::string> words;    ///< including the program, as in main()
+  std::vector<std::string> remarks;  ///< "--force is now --enable", one for each replaced name
 };
 
-/// Spellings with "colour" are replaced too, without a remark. Present names stay as they are.
+/// Also replaces British spellings of "color" without a remark. Current names stay unchanged.
 PresentNames with_present_names(int count, const char* const* values);
 
 }  // namespace patchlight::cli

@@ -40,7 +40,7 @@ void add_choice_options(CLI::App& command, ModelOptions& options) {
   add_flag(command, "--no-merge", options.read.keep_faces);
 }
 
-// The bands of --bands and --color-error, if given.
+// The bands of --bands and --color-error, if any.
 std::optional<BandsAsked> bands_asked(const ModelOptions& options) {
   if (options.bands.empty() && !options.color_error) return std::nullopt;
   BandsAsked asked;
@@ -56,7 +56,7 @@ std::optional<BandsAsked> bands_asked(const ModelOptions& options) {
   return asked;
 }
 
-// Before and behind the last of a letter; the second is empty without one.
+// The text before and after the last occurrence of a letter; the second part is empty without one.
 std::pair<std::string, std::string> parted(const std::string& text, char letter) {
   const std::size_t at = text.rfind(letter);
   if (at == std::string::npos) return {text, {}};
@@ -92,7 +92,7 @@ void take_sky(DaylightSetting& daylight, const std::string& text) {
   daylight.measured = SolarIrradiance{irradiance(values[0]), irradiance(values[1])};
 }
 
-// A date and time with its offset, in UTC.
+// A date and time with offset, converted to UTC.
 Instant instant(const std::string& text) {
   static const std::regex form(R"((\d{4})-(\d{2})-(\d{2})[T ](\d{2}):(\d{2})(?::(\d{2}))?(?:Z|([+-])(\d{2}):(\d{2})))");
   std::smatch found;

@@ -11,18 +11,19 @@
 #include <utility>
 #include <vector>
 
-// The options of commands that say which model is read and how it is solved, with the texts of help_texts.h. A name is
-// written as there: "--max-edge" or "-o,--output". Values land in structures that must outlive the command.
+// Options for reading and solving a model, with the texts of help_texts.h. Names have the form "--max-edge" or
+// "-o,--output". The target variables must outlive the command.
 namespace patchlight::cli {
 
-/// Adds an option with one value, which `take` accepts or refuses.
+/// Adds an option with one value, which `take` parses.
 template <typename Take>
 CLI::Option* add(CLI::App& command, const std::string& name, Take take) {
   option_text(command.get_name(), name);  // it has one
   return command.add_option_function<std::string>(name, take);
 }
 
-/// Adds an option whose value lands in `to`, parsed by a function of the option's short name and the text: length().
+/// Adds an option whose value is stored in `to`. The function parses the text and gets the short name of the option,
+/// e.g. length().
 template <typename To, typename Parse>
 CLI::Option* add(CLI::App& command, const std::string& name, To& to, Parse parse) {
   return add(command, name, [&to, option = name.substr(0, name.find(',')), parse](const std::string& text) {
@@ -30,7 +31,7 @@ CLI::Option* add(CLI::App& command, const std::string& name, To& to, Parse parse
   });
 }
 
-/// Adds an option with a whole number from `lower` to `upper`.
+/// Adds an option for a whole number from `lower` to `upper`.
 template <typename To>
 CLI::Option* add_whole(CLI::App& command, const std::string& name, To& to, std::uint64_t lower, std::uint64_t upper) {
   return add(command, name, to, [lower, upper](const std::string& option, const std::string& text) {
@@ -38,7 +39,7 @@ CLI::Option* add_whole(CLI::App& command, const std::string& name, To& to, std::
   });
 }
 
-/// Adds an option with one of several words, each of which stands for a value.
+/// Adds an option with one of several words; each maps to a value.
 template <typename Value, typename To>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, To& to,
                         const std::vector<std::pair<std::string, Value>>& allowed) {
@@ -47,7 +48,7 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, To& to,
   });
 }
 
-/// Adds an option with a name, which is not empty: `expected` is "the name of a file" or of a folder.
+/// Adds an option with a name that must not be empty: `expected` is "the name of a file" or of a folder.
 template <typename To>
 CLI::Option* add_name(CLI::App& command, const std::string& name, To& to, const std::string& expected) {
   return add(command, name, to, [expected](const std::string& option, const std::string& text) {
@@ -56,22 +57,22 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, To& to, const 
   });
 }
 
-/// Adds an option that may be repeated; its values land in `values`.
+/// Adds an option that can be repeated; its values are appended to `values`.
 inline CLI::Option* add_list(CLI::App& command, const std::string& name, std::vector<std::string>& values) {
   option_text(command.get_name(), name);
   return command.add_option(name, values)->allow_extra_args(name[0] != '-');
 }
 
-/// Adds an option without a value, which makes `to` `value`.
+/// Adds a flag that sets `to` to `value`.
 inline CLI::Option* add_flag(CLI::App& command, const std::string& name, bool& to, bool value = true) {
   option_text(command.get_name(), name);
   return command.add_flag_callback(name, [&to, value] { to = value; });
 }
 
-/// Checks the options of a command after they were parsed, and returns the request. \throws UsageError, InputError.
+/// Checks the parsed options of a command and returns the request. \throws UsageError, InputError.
 using Finish = std::function<Arguments()>;
 
-/// Each adds a command with its options to the tool.
+/// Each function adds a command with its options to the tool.
 Finish add_check(CLI::App& tool);
 Finish add_init(CLI::App& tool);
 Finish add_solve(CLI::App& tool);
@@ -84,16 +85,16 @@ Finish add_compare_solvers(CLI::App& tool);
 Finish add_convergence(CLI::App& tool);
 Finish add_selftest(CLI::App& tool);
 
-/// The options that say which model is read and how, while they are being parsed.
+/// The options for reading a model, during parsing.
 struct ModelOptions {
   std::vector<std::string> models, settings;
   std::string bands;
   std::optional<double> color_error;
-  ReadOptions read;                 ///< but for settings and bands
-  bool max_edge_in_metres = false;  ///< --max-edge has a unit of its own; else it is in units of the model
+  ReadOptions read;                 ///< without settings and bands
+  bool max_edge_in_metres = false;  ///< --max-edge has its own unit; otherwise it uses the unit of the model
 };
 
-/// Adds the arguments that name the files and their units.
+/// Adds the arguments for files and units.
 void add_file_options(CLI::App& command, ModelOptions& options);
 
 /// The same, and the options that change the model: materials, choice of faces, daylight.
@@ -102,11 +103,11 @@ void add_model_options(CLI::App& command, ModelOptions& options);
 /// Adds --set, --up, --sky, --sun, --ground and --weather.
 void add_light_options(CLI::App& command, ModelOptions& options);
 
-/// Takes the model files and how they are read. \throws UsageError when a model is given twice, or InputError when a
-/// --set cannot be understood.
+/// Copies the model files and reading options. \throws UsageError when a model occurs twice, InputError for an invalid
+/// --set.
 void take_model(const ModelOptions& options, ModelArguments& arguments);
 
-/// The same, and the longest edge in meters.
+/// The same, with the longest edge in meters.
 void take_model(const ModelOptions& options, RunArguments& arguments);
 
 /// Adds --sides.
@@ -117,14 +118,14 @@ void add_sides_option(CLI::App& command, To& sides) {
 }
 
 void add_patch_options(CLI::App& command, ModelOptions& options, Request& request);  ///< --max-edge, --patches, ...
-void add_graded_option(CLI::App& command, Request& request);       ///< not where meshes are halved from one to the next
+void add_graded_option(CLI::App& command, Request& request);       ///< not if meshes are halved in sequence
 void add_refinement_options(CLI::App& command, Request& request);  ///< --accuracy, --time-limit, --focus, --no-refine
-void add_accuracy_options(CLI::App& command, Request& request);    ///< the same and error bars: cheap ones if not given
-/// --method and --rays. Form factors that are stored are made by pairs or rays.
+void add_accuracy_options(CLI::App& command, Request& request);    ///< the same and error bars; default: cheap ones
+/// Adds --method and --rays. Stored form factors require the pair or ray method.
 void add_method_options(CLI::App& command, Request& request, bool stored = false);
 
-/// Where no solver is given, one that fits the method; where one is that the ray method does not serve, the pair method
-/// unless another method is given.
+/// Chooses a default solver for the method. If the given solver does not support the ray method, the default becomes
+/// the pair method.
 Request with_fitting_solver(Request request, bool solver_given);
 
 void add_closure_option(CLI::App& command, Request& request);
@@ -139,7 +140,7 @@ void add_tolerance_option(CLI::App& command, double least, To& to) {
 
 void add_sampling_options(CLI::App& command, Request& request);  ///< --samples, --estimator and --seed
 
-/// All effects that a command can enable or disable but these. Closure has an option of its own, --no-closure.
+/// All effects except these that a command can enable or disable. Closure has its own option, --no-closure.
 std::vector<Effect> effects_but(const std::vector<Effect>& without);
 
 /// Adds --enable and --disable for these effects.

@@ -68,14 +68,14 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
   if (given.file.empty() && needs != nullptr) throw UsageError(std::string(needs) + " needs " + file_option + " FILE");
   if (std::count(given.views.begin(), given.views.end(), "") > 0) throw refusal("--view", "", "the name of a camera");
   if (given.camera && !given.views.empty())
-    throw UsageError("--camera and --view both say where the picture is taken from; give one of them");
+    throw UsageError("--camera and --view both set the camera; give one of them");
   if (given.projection && !given.camera)
     throw UsageError("--projection needs --camera EYE TARGET FOV; a camera of a scene file states its own");
   if (given.camera && given.camera->eye == given.camera->target)
     throw UsageError("--camera: EYE and TARGET are the same point; expected two different ones");
 }
 
-// "room.png" of the view "desk": "room.desk.png", with "_" for characters that file names do not allow.
+// "room.png" for the view "desk" becomes "room.desk.png"; characters not allowed in file names become "_".
 std::filesystem::path with_view(const std::filesystem::path& file, const std::string& view) {
   if (file.empty()) return file;
   std::string name = view;
@@ -100,7 +100,7 @@ void require_extension(const std::string& option, const std::string& file, const
   throw UsageError(option + ": found '" + file + "'; expected a name that ends in " + words);
 }
 
-// Sensors may be asked for by --points, by a scene file among the models, or by that of which form factors are kept.
+// Sensors come from --points, from a scene file among the models, or from the scene file of stored form factors.
 bool may_have_sensors(const SolveArguments& arguments) {
   const auto is_scene_file = [](const path& model) {
     return model.extension() == ".toml" || model.extension() == ".hbjson";
@@ -139,7 +139,7 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
   if (!asked.series.empty()) require_extension("--series", asked.series.string(), {".pvd"});
 }
 
-// A folder that is replaced as a whole holds no other file. It need not be there yet.
+// Refuses outputs in a folder that is replaced as a whole. The folder need not exist.
 void require_outside(const path& folder, const std::string& name, const std::vector<OutputFile>& outputs) {
   std::error_code error;
   const path place = weakly_canonical(absolute(folder) / ".", error);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// The options that name results. The values land in structures that must outlive the command.
+// Options for results. The target variables must outlive the command.
 namespace patchlight::cli {
 
 /// The smallest and the largest value of --picture-samples.
@@ -18,7 +18,7 @@ inline constexpr int least_picture_samples = 4, most_picture_samples = 4096;
 /// An example of --camera for messages.
 inline constexpr const char* camera_example = "--camera 4,-3,1.6 0,0,1 60";
 
-/// The options of a picture while they are being parsed.
+/// The options of an image, during parsing.
 struct PictureGiven {
   std::string file, error_map;
   std::vector<std::string> views;
@@ -29,35 +29,35 @@ struct PictureGiven {
   std::optional<std::array<int, 2>> size;
   std::optional<double> error;
   std::optional<int> most_samples;
-  bool for_observers = false;  ///< where the eye is, is asked for without a picture too
+  bool for_observers = false;  ///< observers need a camera even without an image
 };
 
-/// Adds all options of pictures; a quality that is not given is `usual`.
+/// Adds all image options.
 void add_picture_options(CLI::App& command, PictureGiven& given);
 
-/// Adds --camera, --projection, --view and --size of these alone.
+/// Adds only --camera, --projection, --view and --size.
 void add_view_options(CLI::App& command, PictureGiven& given);
 
-/// The picture that is asked for; `file_option` is the one that names it. \throws UsageError when options contradict
-/// each other.
+/// The requested image; `file_option` names its file. `usual` is the default quality. \throws UsageError for
+/// contradictory options.
 PictureSettings picture_settings(const PictureGiven& given, const std::string& file_option, PictureQuality usual);
 
-/// One picture for each view: of several, each with its view in its files' names, "room.desk.png" for "room.png".
+/// One image for each view. Several images have the view in their file names, "room.desk.png" for "room.png".
 std::vector<PictureSettings> single_pictures(const PictureSettings& settings);
 
-/// The files of pictures, with the options that ask for them.
+/// The files of images, with their options.
 std::vector<OutputFile> picture_files(const PictureSettings& settings, const std::string& file_option);
 
 /// Adds --lightmap and --texel.
 void add_lightmap_options(CLI::App& command, LightmapSettings& settings);
 
-/// \throws UsageError for texels of no lightmap.
+/// \throws UsageError for --texel without a lightmap.
 void require_lightmap(const LightmapSettings& settings);
 
-/// \throws UsageError when an output lies in the folder of the lightmap, which is replaced as a whole.
+/// \throws UsageError when an output lies in the lightmap folder, which is replaced as a whole.
 void require_outside_lightmap(const LightmapSettings& settings, const std::vector<OutputFile>& outputs);
 
-/// One line about a lightmap: size, texels, and why they are larger than was asked for, charts and the memory it took.
+/// One line about a lightmap: size, texels, the reason if they are larger than requested, charts and memory.
 std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings);
 
 /// Adds --json with one file (.json).
@@ -66,15 +66,15 @@ void add_json_option(CLI::App& command, std::filesystem::path& json);
 /// Adds --html with one file.
 void add_page_option(CLI::App& command, std::filesystem::path& page);
 
-/// \throws UsageError when the page would lie in the folder that the command replaces as a whole.
+/// \throws UsageError when the page lies in the folder that the command replaces as a whole.
 void require_page_elsewhere(const std::filesystem::path& page, const std::filesystem::path& folder);
 
-/// The options of the solver and the outputs, while they are being parsed.
+/// The options of solver and outputs, during parsing.
 struct SolutionOptions {
-  SolveArguments arguments;  ///< but for the results, the picture and the outputs of sensors
+  SolveArguments arguments;  ///< without results, image and sensor outputs
   std::vector<std::string> results, points_outputs;
   PictureGiven picture;
-  std::string map_given;  ///< the option
+  std::string map_given;  ///< its option
 };
 
 /// Adds the options of all results, pictures and sensors.
@@ -86,15 +86,15 @@ void add_solver_options(CLI::App& command, SolveArguments& arguments);
 /// Adds --discard, -q and -v.
 void add_verbosity_options(CLI::App& command, SolveArguments& arguments);
 
-/// The arguments with the results that these options ask for, once they hold the inputs and the request. `command` is
-/// the one that is being parsed. \throws UsageError when options contradict each other, or files are the same.
+/// The arguments with the requested results, after inputs and request are set. `command` is the parsed command.
+/// \throws UsageError for contradictory options or identical files.
 SolveArguments with_solution(const SolutionOptions& options, const std::string& command);
 
-/// The files that would be written, each with its option.
+/// The output files, each with its option.
 std::vector<OutputFile> outputs_of(const CheckArguments& arguments);
 std::vector<OutputFile> outputs_of(const SolveArguments& arguments);
 
-/// The files of the command line that are read.
+/// The input files of the command line.
 std::vector<std::filesystem::path> given_files(const SolveArguments& arguments);
 
 }  // namespace patchlight::cli

@@ -11,14 +11,14 @@
 namespace patchlight::cli {
 namespace {
 
-// The name of a unit, and its size.
+// Name and size of a unit.
 using Unit = std::pair<const char*, double>;
 
-// A number alone is in meters.
+// A plain number is in meters.
 constexpr std::array<Unit, 6> units_of_length = {
     {{"", 1}, {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
-// A number above 0 times the unit that follows it; nothing when there is no such unit.
+// A positive number times its unit; empty for an unknown unit.
 std::optional<double> quantity(const std::string& text, std::span<const Unit> units) {
   const std::size_t end = text.find_last_of("0123456789.") + 1;
   const std::size_t begin = std::min(text.find_first_not_of(' ', end), text.size());
@@ -83,18 +83,18 @@ double bytes(const std::string& option, const std::string& text) {
                                           {"MiB", 1024.0 * 1024},
                                           {"GiB", 1024.0 * 1024 * 1024}}};
   if (const std::optional<double> value = quantity(text, units)) return *value;
-  throw refusal(option, text, "a size above 0 such as 2GB, 512MiB or '2 GB'; units: B, kB, MB, GB, TB, MiB, GiB");
+  throw refusal(option, text, "a size above 0, e.g. 2GB, 512MiB or '2 GB'; units: B, kB, MB, GB, TB, MiB, GiB");
 }
 
 double seconds(const std::string& option, const std::string& text) {
   constexpr std::array<Unit, 3> units = {{{"s", 1}, {"min", 60}, {"h", 3600}}};
   if (const std::optional<double> value = quantity(text, units)) return *value;
-  throw refusal(option, text, "a time above 0 such as 30s, 2min or '1 h'; units: s, min, h");
+  throw refusal(option, text, "a time above 0, e.g. 30s, 2min or '1 h'; units: s, min, h");
 }
 
 double length(const std::string& option, const std::string& text) {
   if (const std::optional<double> value = quantity(text, units_of_length)) return *value;
-  throw refusal(option, text, "a length above 0 such as 5cm or 0.05; units: m, cm, mm, in, ft");
+  throw refusal(option, text, "a length above 0, e.g. 5cm or 0.05; units: m, cm, mm, in, ft");
 }
 
 double relative_error(const std::string& option, const std::string& text) {
@@ -105,23 +105,23 @@ double relative_error(const std::string& option, const std::string& text) {
   const double error = value ? *value / (percent ? 100 : 1) : 0;
   if (once && error > 0 && error < 1) return error;
   const bool meant_in_percent = !percent && error >= 1 && error < 100;
-  throw refusal(option, text,
-                "an error above 0 and below 100%, such as 1% or 0.01" +
-                    (meant_in_percent ? "; did you mean " + text + "%?" : ""));
+  throw refusal(
+      option, text,
+      "an error above 0 and below 100%, e.g. 1% or 0.01" + (meant_in_percent ? "; did you mean " + text + "%?" : ""));
 }
 
 double share(const std::string& option, const std::string& text) {
   const std::size_t end = text.find_last_not_of(" %") + 1;
   const std::optional<double> value = to_number(text.substr(0, end));
   const bool is_share = text.find('%') != std::string::npos && text.find('%') == text.rfind('%');
-  if (!value || !is_share || !(*value > 0)) throw refusal(option, text, "a share above 0 such as 5%");
+  if (!value || !is_share || !(*value > 0)) throw refusal(option, text, "a percentage above 0, e.g. 5%");
   return *value / 100;
 }
 
 Point point(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = split(text);
   Point result = Point::Zero();
-  const std::string expected = "three numbers X,Y,Z such as 4,-3,1.6";
+  const std::string expected = "three numbers X,Y,Z, e.g. 4,-3,1.6";
   if (parts.size() != 3) throw refusal(option, text, expected);
   for (int axis = 0; axis < 3; ++axis) {
     const std::optional<double> value = to_number(parts[axis]);

@@ -13,15 +13,15 @@
 
 namespace patchlight::cli {
 
-/// The finite number that all of `text` stands for, with a decimal point whatever the locale; nothing otherwise.
+/// The finite number in `text`, with a decimal point in every locale; empty otherwise.
 std::optional<double> to_number(const std::string& text);
 
-/// The parts of `text` between spaces, tabs and commas, empty parts left out.
+/// The parts of `text` between spaces, tabs and commas, without empty parts.
 std::vector<std::string> split(const std::string& text);
 
-// The value of an option from its text. Each throws a UsageError that names the option.
+// Parsers for option values. Each throws a UsageError that names the option.
 
-/// A number that `accepted` likes; `expected` describes it.
+/// A number that satisfies `accepted`; `expected` describes it.
 double number(const std::string& option, const std::string& text, const std::string& expected,
               const std::function<bool(double)>& accepted);
 
@@ -48,10 +48,10 @@ Solver solver_named(const std::string& option, const std::string& text);
 /// The solvers' names.
 std::string solver_names(const std::string& separator);
 
-/// The sentence that refuses a value.
+/// The error for an invalid value.
 UsageError refusal(const std::string& option, const std::string& found, const std::string& expected);
 
-/// The value that one of several allowed words stands for. \throws UsageError that lists them.
+/// The value of one of several allowed words. \throws UsageError with the list of words.
 template <typename Value>
 Value choice(const std::string& option, const std::string& text,
              const std::vector<std::pair<std::string, Value>>& allowed) {

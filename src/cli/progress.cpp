@@ -42,7 +42,7 @@ std::string ProgressLine::text_of(const Progress& progress, double now) {
   }
   std::string text =
       work_ + name_of(progress.stage) + ' ' + std::to_string(std::lround(100 * progress.fraction)) + " %";
-  // The time left follows from the time taken; too early it would only flicker.
+  // The time left is extrapolated; early estimates fluctuate.
   const double taken = now - stage_begin_;
   if (taken > 1 && progress.fraction > 0.02 && progress.fraction < 1) {
     text += ", " + duration(taken * (1 - progress.fraction) / progress.fraction) + " left";
@@ -61,7 +61,7 @@ void ProgressLine::show(const Progress& progress, double now) {
     return;
   }
   const std::size_t length = text.size();
-  if (length < width_) text.append(width_ - length, ' ');  // covers what is left of a longer line
+  if (length < width_) text.append(width_ - length, ' ');  // overwrites the rest of a longer line
   width_ = length;
   std::cerr << '\r' << text << std::flush;
 }

@@ -14,14 +14,13 @@
 
 namespace patchlight::cli {
 
-/// How progress is shown: not at all, in one line that is rewritten, or, where that cannot be, in a line every ten
-/// seconds.
+/// The display of progress: none, one updated line, or a new line every ten seconds.
 enum class ProgressShown { nothing, line, log };
 
-/// The line where stderr is a terminal, else the log.
+/// The updated line if stderr is a terminal, else the log.
 ProgressShown progress_shown(bool quiet);
 
-/// Stage, percent and time left on stderr while the work goes on. A line that is rewritten is erased at the end.
+/// Prints stage, percentage and time left on stderr. An updated line is erased at the end.
 class ProgressLine {
  public:
   explicit ProgressLine(ProgressShown shown) : shown_(shown) {}
@@ -29,12 +28,12 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// The name of the work, before stage, percent and time left; empty at first.
+  /// Sets the name of the work, printed first; initially empty.
   void name(std::string work);
   void show(const Progress& progress) { show(progress, wall_seconds()); }
-  /// At this time, in wall seconds.
+  /// `now` is in wall seconds.
   void show(const Progress& progress, double now);
-  /// Erases the line, so that something else can be printed.
+  /// Erases the line before other output.
   void hide();
 
  private:
@@ -48,32 +47,32 @@ class ProgressLine {
   std::size_t width_ = 0;            // characters on the line
 };
 
-/// Shows progress on the line, which must outlive it, and lets the work go on until the run is interrupted.
+/// Shows progress on the line, which must outlive the observer, and continues until the run is interrupted.
 Observer observer_on(ProgressLine& line);
 
-/// Reads the models of a command. \throws Cancelled when the run was interrupted before; else as read_scene().
+/// Reads the models of a command. \throws `Cancelled` after an interrupt; else as read_scene().
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer);
 
-/// From now on SIGINT, SIGTERM and SIGHUP, unless the caller ignores them, ask the run to stop: interrupted() becomes
-/// true. A stage that does not ask in time is ended half a second later, which loses nothing as long as no result is
-/// being written.
+/// Starts to handle SIGINT, SIGTERM and SIGHUP, unless the caller ignores them: interrupted() becomes true. If the
+/// current stage does not check it within half a second, the program exits. No result is lost while none is being
+/// written.
 void watch_interrupts();
 
-/// True once the run was asked to stop.
+/// True after a signal to stop.
 bool interrupted();
 
-/// The exit code of a run that was stopped: 128 and the number of the last signal.
+/// The exit code of an interrupted run: 128 plus the number of the last signal.
 ExitCode interrupted_run();
 
-/// From now on there is something to write: the first signal only asks the run to stop, however long that takes. A
-/// second one ends it.
+/// From now on the first signal only requests a stop, without a time limit, because there are results to write. A
+/// second signal exits.
 void keep_what_is_there();
 
-/// Forgets such a first signal, so that the results so far can be written; the next one ends the run. False when the
-/// run was asked to end.
+/// Resets the first signal, so that the results so far can be written; the next signal exits. Returns false if the run
+/// must end now.
 bool may_write_what_is_there();
 
-/// Results are being written while this lives: the file at hand is finished or removed before the run stops.
+/// Protects the writing of results: the current file is finished or removed before the run stops.
 class WritingGuard {
  public:
   WritingGuard();

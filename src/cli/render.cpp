@@ -36,7 +36,7 @@
 namespace patchlight::cli {
 namespace {
 
-// The cameras that are asked for, else all of the scene.
+// The requested cameras, else all of the scene.
 std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, const Scene& scene) {
   if (wanted.front().views.empty() && !wanted.front().camera && !scene.cameras.empty()) return scene.cameras;
   std::vector<Camera> cameras;
@@ -48,7 +48,7 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
-// With the patches that are enclosed by day, which the file does not list.
+// Adds the patches that are enclosed by day, which the file does not contain.
 Simulation stored_solution(const std::filesystem::path& file, const std::shared_ptr<const Scene>& scene) {
   Simulation simulation = read_solution(file, scene);
   if (scene->sky || scene->sun)
@@ -68,7 +68,7 @@ void write_page_of_pictures(const RenderArguments& arguments, const Scene& scene
   write_page(arguments.page, page);
 }
 
-// Returns the line about it.
+// Returns the line about the lightmap.
 std::string write_lightmap_of(const RenderArguments& arguments, const Scene& scene, const Simulation& simulation,
                               const Observer& observer) {
   const Lightmap map = bake_lightmap(simulation, arguments.lightmap.options, observer);
@@ -127,7 +127,7 @@ std::optional<std::string> missed_error(const PictureSettings& settings, const P
                      " (root mean square), not the " + rounded(100 * settings.error, 2) +
                      "% of --picture-error, with at most " + std::to_string(settings.most_samples) +
                      " samples per pixel\nhint: ";
-  // Errors fall with the root of the samples' number at the slowest.
+  // Errors decrease at least with the square root of the number of samples.
   const double times = std::pow(*picture.reached_error / settings.error, 2);
   const double wanted = std::min<double>(most_picture_samples, std::ceil(times * settings.most_samples));
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(wanted));
@@ -141,7 +141,7 @@ void write_picture_file(const std::filesystem::path& file, const Picture& pictur
 }
 
 ExitCode render(const RenderArguments& arguments) {
-  // 1. Refuse what cannot be written, or would be lost
+  // 1. Refuse outputs that cannot be written or would be lost
   const std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
   if (!arguments.observers.empty()) check_writable(arguments.observers);
   for (const PictureSettings& one : wanted) {
@@ -163,7 +163,7 @@ ExitCode render(const RenderArguments& arguments) {
   std::optional<Simulation> other;
   if (!arguments.difference.empty()) other = stored_solution(arguments.difference, read);
 
-  // 3. Take the pictures, and write each as soon as it is there; the first Ctrl-C ends with the one at hand
+  // 3. Render the images and write each at once; the first Ctrl-C stops after the current one
   std::vector<std::filesystem::path> written;
   if (!arguments.observers.empty()) {
     const auto readings = read_observers(simulation, observers_of(wanted, scene), observer);

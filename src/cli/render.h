@@ -11,22 +11,21 @@
 
 namespace patchlight::cli {
 
-/// The camera that is asked for, else the first of the scene, in meters; nothing when there is none. \throws InputError
-/// when the scene has no camera of that name.
+/// The requested camera, else the first of the scene, in meters; empty if there is none. \throws InputError when the
+/// scene has no camera of that name.
 std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& scene);
 
-/// \throws InputError when that camera lies too far from the scene.
+/// \throws InputError when that camera is too far from the scene.
 void require_camera_in_reach(const PictureSettings& settings, const Scene& scene);
 
-/// The picture that is asked for. \throws Cancelled.
+/// Renders the requested image. \throws `Cancelled`.
 Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
                      const Observer& observer);
 
-/// A sentence with the error of a finished picture and a remedy, where the error is more than a tenth above the one
-/// that is asked for.
+/// A message with the error of a finished image and a remedy, if the error exceeds the requested one by more than 10 %.
 std::optional<std::string> missed_error(const PictureSettings& settings, const Picture& picture);
 
-/// Writes it, with a legend where its colors are false. \throws OutputError.
+/// Writes the image, with a legend for false colors. \throws OutputError.
 void write_picture_file(const std::filesystem::path& file, const Picture& picture, const Scene& scene);
 
 }  // namespace patchlight::cli

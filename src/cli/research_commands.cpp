@@ -18,7 +18,7 @@
 namespace patchlight::cli {
 namespace {
 
-// Options that these commands share.
+// Options shared by these commands.
 template <typename Arguments>
 struct ResearchOptions {
   ModelOptions model;
@@ -54,7 +54,7 @@ CrosscheckArguments finish_crosscheck(const CrosscheckOptions& options) {
   CrosscheckArguments arguments = options.arguments;
   take_model(options.model, arguments);
   arguments.options.seed = arguments.request.assembly.seed;
-  // So many of the sides that --sides auto leaves out are checked.
+  // number of checked sides among those that --sides auto leaves out
   arguments.options.left_out = arguments.request.mesh.sides == Sides::automatic ? 16 : 0;
   arguments.options.relative_bar = arguments.bar;
   arguments.request.accuracy.error_bars = !arguments.bar;
@@ -92,7 +92,7 @@ void add_form_factor_options(CLI::App& command, FormFactorOptions& to) {
   command.add_option_function<std::vector<std::string>>("--without", switch_off)->allow_extra_args(false);
 }
 
-// A matrix and tables of groups are of all pairs.
+// A matrix and tables of groups require the pair method.
 void require_pairs(const FormFactorOptions& options) {
   const std::filesystem::path extension = options.arguments.output.extension();
   const char* const wanted = options.format                               ? "--matrix"
@@ -129,7 +129,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
   return arguments;
 }
 
-// The common end of the commands that write a folder, and a page beside it.
+// Finishes commands that write a folder and an optional page beside it.
 template <typename Arguments>
 Arguments finished_folder(const ResearchOptions<Arguments>& options, const std::string& command) {
   require_model(options, command, " -o FOLDER");

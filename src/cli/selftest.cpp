@@ -35,7 +35,7 @@ std::string table(const std::vector<ValidationResult>& results) {
   return text_table(rows);
 }
 
-// One case after the other, saying which.
+// Runs the cases in sequence and reports the current one.
 std::vector<ValidationResult> run(std::span<const ValidationCase> cases) {
   ProgressLine line(progress_shown(false));
   std::vector<ValidationResult> results;

@@ -36,11 +36,11 @@
 namespace patchlight::cli {
 namespace {
 
-// The views of a solution.
+// Views of a solution.
 struct Views {
   std::vector<std::filesystem::path> points_outputs;
   SensorView sensors;
-  std::optional<Picture> picture;  // of the file, or of the page alone
+  std::optional<Picture> picture;  // for the file, or only for the page
   std::optional<Lightmap> lightmap;
   std::optional<InputError> lightmap_error;
 };
@@ -54,8 +54,8 @@ struct Results {
   Provenance provenance;
 };
 
-// The iterates of the last three solutions: that which is written need not be the last, when the run was stopped or a
-// second solution was no better.
+// The iterates of the last three solutions. The written solution may be an earlier one, when the run was stopped or a
+// later solution was no better.
 class Iterates {
  public:
   explicit Iterates(bool wanted) : wanted_(wanted) {}
@@ -106,7 +106,7 @@ void check_outputs(const SolveArguments& arguments) {
   for (const std::filesystem::path& file : arguments.points_outputs) check_writable(file);
 }
 
-// Reads the input, and checks all that could fail only after hours.
+// Reads the input and checks everything that could fail only after hours.
 SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   if (!observer({.stage = Stage::read})) throw Cancelled();
   SolveInput input = read_input(arguments);
@@ -133,7 +133,7 @@ SolveInput read(const SolveArguments& arguments, const Observer& observer) {
   return input;
 }
 
-// Irradiance at sensors, pictures and the lightmap, in this order, up to a signal; the simulation's costs get theirs.
+// Computes sensors, images and the lightmap, in this order, until a signal, and adds their costs to the simulation.
 Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments& arguments, const Observer& observer) {
   Views views;
   StageClock looking;
@@ -157,7 +157,7 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
     simulation.unfinished = true;
   } catch (const InputError& error) {
     if (arguments.lightmap.folder.empty()) throw;
-    views.lightmap_error = error;  // the other views are not lost for it
+    views.lightmap_error = error;  // the other views are kept
   }
   simulation.costs.insert(simulation.costs.end(), looking.costs().begin(), looking.costs().end());
   return views;
@@ -165,12 +165,12 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
 
 Report report_on(const Results& results, const Request& request) {
   const SensorView& sensors = results.views.sensors;
-  const bool are_read = sensors.readings.irradiance.size() > 0;  // not where the run was stopped before
+  const bool are_read = sensors.readings.irradiance.size() > 0;  // false if the run was stopped before
   return report_of(*results.scene, request, results.simulation,
                    are_read ? sensor_facts(results.scene->sensors, sensors.readings, sensors.warnings) : SensorFacts{});
 }
 
-// Prints a line for each mesh as soon as it is solved, unless the run is quiet.
+// Prints a line for each solved mesh, unless the run is quiet.
 LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
   if (arguments.quiet) return {};
   return [&line](const Simulation& simulation) {
@@ -180,7 +180,7 @@ LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
   };
 }
 
-// The scene and its solution.
+// Solves the scene.
 Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, ProgressLine& line, const Observer& observer) {
   Results results;
   Simulation& simulation = results.simulation;
@@ -213,7 +213,7 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   return results;
 }
 
-// As a table, or as maps with the lines in which the plane of each grid cuts the model.
+// Writes a table, or maps with the section lines of the model in each grid plane.
 void write_readings(const std::filesystem::path& file, const Results& results, MapOptions map) {
   const Readings& readings = results.views.sensors.readings;
   if (file.extension() != ".svg" && file.extension() != ".png")
@@ -237,7 +237,7 @@ Page page_of_run(const Results& results, const SolvedSurface& surface) {
   return page;
 }
 
-// Files that appear together when they are published.
+// Files that are published together.
 class Outputs {
  public:
   template <typename Write>
@@ -259,8 +259,8 @@ bool has_views(const SolveArguments& arguments, const Scene& scene) {
          !arguments.lightmap.folder.empty();
 }
 
-// Writes the solution. It is published before views of it begin, which may take long; without views it appears together
-// with the report and the series.
+// Publishes the solution before views are computed, which may take long. Without views it is published together with
+// the report and the series.
 void write_solution(const SolveArguments& arguments, const Results& results,
                     const std::optional<SolvedSurface>& surface, Outputs& outputs) {
   const WritingGuard guard;
@@ -273,7 +273,7 @@ void throw_if_interrupted() {
   if (interrupted()) throw Cancelled();
 }
 
-// Writes the views, the report and, last, the series. The run can be stopped between two files.
+// Writes the views, the report and finally the series. The run can be stopped between two files.
 void write_views(const SolveArguments& arguments, const Results& results, const std::optional<SolvedSurface>& surface,
                  Outputs& outputs) {
   using Path = std::filesystem::path;
@@ -307,7 +307,7 @@ void write_views(const SolveArguments& arguments, const Results& results, const 
       });
 }
 
-// How the errors can be computed, after a statement that they are not known.
+// Explains how to compute the errors, after a statement that they are unknown.
 std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished) {
   if (unfinished) return "";
   if (!arguments.form_factors.empty())
@@ -316,7 +316,7 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
   return part ? " with " + with_option_names(*part) : "\nhint: --error-bars computes it, in about twice the time";
 }
 
-// Prints warnings, then the results that the user asked for, the files, the facts of the run, and notes.
+// Prints warnings, requested results, files, facts of the run, and notes.
 void print_results(const SolveArguments& arguments, const Results& results,
                    const std::vector<std::filesystem::path>& written, const Diagnostics& of_checkpoint) {
   for (const Diagnostic& warning : results.views.sensors.warnings) print_diagnostic("warning", warning);
@@ -332,7 +332,7 @@ void print_results(const SolveArguments& arguments, const Results& results,
   print_notes(all, false, arguments.verbose ? all.size() : 5);
 }
 
-// Warns of results that are worse than those asked for.
+// Warns of results that miss the requested accuracy.
 ExitCode exit_code_of(const Report& report) {
   if (report.solution.unfinished) {
     print_message("warning", explain_unfinished(report));
@@ -366,7 +366,7 @@ ExitCode solve(const SolveArguments& arguments) {
   Outputs outputs;
   write_solution(arguments, results, surface, outputs);
 
-  // 2. Look at it, and write the views
+  // 2. Compute and write the views
   if (!arguments.discards) keep_what_is_there();
   results.views = views_of(*results.scene, results.simulation, arguments, observer);
   if (!may_write_what_is_there()) throw Cancelled();

@@ -28,8 +28,8 @@ void require_same_unit(const std::filesystem::path& folder, const FormFactorInfo
   throw InputError(folder.string(), text.str());
 }
 
-// A patch with edges up to max_edge has an area up to its square: a model with more area is another one, which is said
-// before it is cut into very many patches.
+// A patch with edges up to max_edge has at most the area max_edge^2. A model with more area than that allows is a
+// different one, and is refused before it is meshed into very many patches.
 void require_room_for(const std::filesystem::path& folder, const FormFactorInfo& info, const Scene& scene,
                       const Request& request) {
   const double largest = info.max_edge * info.max_edge;
@@ -42,7 +42,7 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
   throw InputError(folder.string(), text.str());
 }
 
-// The share of light that the front (0) and the back (1) of each polygon holds back.
+// Fractions of light that the front (0) and the back (1) of each polygon do not pass on specularly.
 using HeldShares = std::vector<std::array<double, 2>>;
 
 HeldShares held_shares(const Scene& scene, Reflections reflections) {
@@ -53,7 +53,7 @@ HeldShares held_shares(const Scene& scene, Reflections reflections) {
   return held;
 }
 
-// The light that clear faces and mirrors pass on is in the form factors, and in the area of their patches.
+// Stored form factors and patch areas depend on the specular reflectance and transmittance of panes and mirrors.
 void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
                         const HeldShares& held) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -68,7 +68,7 @@ void require_same_panes(const std::filesystem::path& folder, const StoredShares&
   }
 }
 
-// The request with the options that the form factors were made with.
+// The request with the options of the stored form factors.
 Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& info) {
   Request request = arguments.request;
   if (!request.mesh.max_edge && !request.mesh.patches) request.mesh.max_edge = info.max_edge;

@@ -16,35 +16,35 @@ namespace patchlight::cli {
 struct SolveInput {
   Scene scene;
   Request request;
-  ExchangeOf exchange = {};         ///< reads stored form factors; empty: they are computed
-  RayExchangeOf ray_exchange = {};  ///< reads stored rows of rays; empty: they are traced
+  ExchangeOf exchange = {};         ///< reads stored form factors; empty: computed
+  RayExchangeOf ray_exchange = {};  ///< reads stored rows of the ray method; empty: traced
 };
 
-/// Reads the scene from the models, or where there are none from the folder of form factors. Stored form factors bring
-/// the options that they were made with. \throws InputError.
+/// Reads the scene from the models, or without models from the folder of form factors. Stored form factors override the
+/// options that they depend on. \throws InputError.
 SolveInput read_input(const SolveArguments& arguments);
 
 /// Adds the points of --points to the sensors of the scene. \throws InputError.
 Scene with_points(Scene scene, const SolveArguments& arguments);
 
-/// The file of the readings: the one that the arguments name, else their default where the scene has sensors. \throws
-/// InputError when an output is named but nothing is to be read.
+/// The named files for readings, else the default file if the scene has sensors. \throws InputError when a file is
+/// named but there are no sensors.
 std::vector<std::filesystem::path> points_outputs(const SolveArguments& arguments, const Scene& scene);
 
-/// The folder of --checkpoint, and the fate of its blocks of rows in this run.
+/// The folder of --checkpoint, and its blocks of rows in this run.
 class Checkpoint {
  public:
   Checkpoint() = default;
-  /// Makes the folder if it is not there. \throws OutputError when it cannot be written into.
+  /// Creates a missing folder. \throws OutputError when it is not writable.
   explicit Checkpoint(std::filesystem::path folder);
 
-  /// Its blocks; empty without a folder. This and the scene must outlive them.
+  /// Its blocks; empty without a folder. The checkpoint and the scene must outlive them.
   RowBlocksOf blocks(const RowScene& of);
 
-  /// Removes the blocks of this run, and the folder when this has made it and nothing else is in it.
+  /// Removes the blocks of this run, and the folder if this run created it and it is empty.
   void remove() const;
 
-  /// Says how many blocks an earlier run had kept; empty: none.
+  /// Notes the number of blocks kept by an earlier run; empty if there are none.
   Diagnostics notes() const;
 
  private:

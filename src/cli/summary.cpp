@@ -13,7 +13,7 @@
 namespace patchlight::cli {
 namespace {
 
-// The parts of the error, each in percent. Where no bound of the solver's is known, the error does not have it.
+// The parts of the error in percent; the solver's part is unknown without a bound.
 std::string parts(const AccuracyStep& step) {
   return "mesh " + percent(step.mesh, 2) + ", form factors " + percent(step.form_factor, 2) + ", solver " +
          (std::isfinite(step.solver) ? percent(step.solver, 1) : "unknown");
@@ -43,7 +43,7 @@ std::string convergence(const Report& report) {
   return text.str();
 }
 
-// The errors of the patches' means, and the variation within patches.
+// The errors of patch means, and the variation within patches.
 std::string errors(const Report& report) {
   std::string on;
   for (const std::string& name : report.plan.accuracy.interest) on += (on.empty() ? " on " : ", ") + name;
@@ -59,7 +59,7 @@ std::string errors(const Report& report) {
   return text;
 }
 
-// The remedy for an error above 5 %, where no accuracy was asked for.
+// The remedy for an error above 5 %, unless an accuracy was requested.
 std::string advice_on_errors(const Report& report) {
   const AccuracyStep& step = report.accuracy.back();
   if (refines(report.plan.accuracy) || !(known_error(step) > 0.05)) return {};
@@ -71,7 +71,7 @@ std::string advice_on_errors(const Report& report) {
          '\n';
 }
 
-// The meshes on the way to an accuracy.
+// The sequence of meshes in adaptive refinement.
 std::string steps_table(const std::vector<AccuracyStep>& steps) {
   std::vector<TextRow> rows{
       {"patches", "of these new", "samples", "mesh %", "form factors %", "solver %", "total %", "s", "CPU s"}};
@@ -83,15 +83,15 @@ std::string steps_table(const std::vector<AccuracyStep>& steps) {
   return text_table(rows);
 }
 
-// Rows of rays carry flux from patch to patch by chance: of R rays that carry equal parts of it 1 / sqrt(R) is off, and
-// up to ten times as much where few of the rays carry most of it.
+// Rows of the ray method have random errors: 1 / sqrt(R) for R rays with equal flux, and up to ten times as much if a
+// few rays carry most of the flux.
 std::string why_imbalanced(const Report& report) {
   if (report.plan.assembly.storage != Storage::rays) return {};
   const double usual =
       1 / std::sqrt(static_cast<double>(report.plan.assembly.rays) * static_cast<double>(report.patches));
   if (report.balance.imbalance < usual / 10) return {};
   const bool is_noise = report.balance.imbalance <= 10 * usual;
-  return std::string(is_noise ? ", by the noise of the rays" : ", more than the noise of the rays explains") +
+  return std::string(is_noise ? ", due to the noise of the rays" : ", more than the noise of the rays explains") +
          ": up to a few times " + rounded(usual, 1) + " is usual, one over the root of their number";
 }
 
@@ -99,7 +99,7 @@ std::string energy(const Report& report) {
   const EnergyBalance& balance = report.balance;
   const bool row_sums_known = report.form_factors.row_sum.has_value();
   const bool is_spectral = are_of_wavelengths(report.scene.bands);
-  // Watts of wavelengths add up.
+  // Spectral bands are summed.
   const auto in_words = [is_spectral](const Eigen::ArrayXd& values) {
     return is_spectral ? rounded(values.sum()) : bands(values);
   };
@@ -146,7 +146,7 @@ std::string sampling(const SamplingFacts& facts) {
          percent(facts.visible.bound, 2) + " % (seen) and " + percent(facts.occluded.bound, 2) + " % (hidden)";
 }
 
-// The counts of the whole matrix.
+// Counts over the whole matrix.
 std::string assembly(const FormFactorFacts& facts) {
   std::ostringstream text;
   const AssemblyCounts& counts = *facts.counts;
@@ -179,7 +179,7 @@ std::string details(const Report& report) {
 
 std::string error_text(double error) { return std::isnan(error) ? "not known" : rounded(error, 2); }
 
-// A line for each group of sensors: the mean and its standard error first.
+// A line for each group of sensors, with the mean and its standard error first.
 std::string sensor_lines(const Report& report, const std::string& how_to_know_errors) {
   const SensorFacts& sensors = report.sensors;
   if (sensors.groups.empty()) return {};
@@ -240,7 +240,7 @@ void print_notes(const Diagnostics& notes, bool quiet, std::size_t most) {
                               " more notes\nhint: --verbose prints them, --json FILE has them");
 }
 
-// An axis that was guessed: the model's floors may be walls.
+// A guessed vertical axis: the floors of the model may be walls.
 std::string upright(const SceneFacts& scene) {
   if (scene.up_stated) return "";
   return std::string(scene.up.y() > scene.up.z() ? "y" : "z") + " is the vertical axis (guessed), ";

@@ -5,7 +5,7 @@
 namespace patchlight::cli {
 namespace {
 
-// Characters of a text in UTF-8: continuation bytes do not count.
+// Number of UTF-8 characters: continuation bytes do not count.
 std::size_t length_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));

@@ -38,7 +38,7 @@ constexpr std::uint64_t changing_files = LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOC
                                          LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO |
                                          LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SYM;
 
-// landlock(7); kernels before 5.13 have none.
+// landlock(7); not available before Linux 5.13.
 void confine_files(const std::vector<std::filesystem::path>& readable) {
   landlock_ruleset_attr handled{};
   handled.handled_access_fs = reading_files | changing_files;
@@ -56,7 +56,7 @@ void confine_files(const std::vector<std::filesystem::path>& readable) {
   ::close(rules);
 }
 
-// seccomp(2): socket() gives EACCES, all other calls are as before.
+// seccomp(2): socket() fails with EACCES; other calls are unaffected.
 void forbid_sockets() {
   std::array<sock_filter, 4> filter = {{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
                                         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_socket, 0, 1),
@@ -66,8 +66,8 @@ void forbid_sockets() {
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }
 
-// From now on this process and its children open no sockets, write no files and read files of these folders only, as
-// far as the kernel can keep them from it (Landlock, seccomp). Files that are open stay so.
+// Restricts this process and its children, as far as the kernel supports it (Landlock, seccomp): no new sockets, no
+// writing of files, reading only in these folders. Open files stay usable.
 void confine_process(const std::vector<std::filesystem::path>& readable) {
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return;
   confine_files(readable);
@@ -76,14 +76,14 @@ void confine_process(const std::vector<std::filesystem::path>& readable) {
 
 // The first byte of the child's message.
 constexpr char sends_result = 'S';
-constexpr char sends_refusal = 'R';  // the text of an InputError
-constexpr char sends_failure = 'F';  // any other exception's
+constexpr char sends_refusal = 'R';  // text of an InputError
+constexpr char sends_failure = 'F';  // text of another exception
 
 constexpr rlim_t bytes_per_byte_of_file = 300;
 
-// Limits the memory that this process takes beyond what it has.
+// Limits the additional memory of this process.
 void limit_memory(const std::string& file, rlim_t most_bytes) {
-  // proc(5): the sizes, in pages, of the program, what is resident, shared, text, lib, data and stack
+  // proc(5): sizes in pages: program, resident, shared, text, lib, data and stack
   std::ifstream statm("/proc/self/statm");
   rlim_t pages = 0;
   for (int field = 0; field < 6; ++field) statm >> pages;
@@ -96,7 +96,7 @@ void limit_memory(const std::string& file, rlim_t most_bytes) {
   setrlimit(RLIMIT_DATA, &limit);
 }
 
-// A child ends with its parent, without a trace on the terminal or the disk.
+// A child ends with its parent, without terminal output or a core dump.
 void prepare_child(const std::string& file, const ChildLimits& limits) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGALRM}) {
@@ -133,7 +133,7 @@ bool write_all(int pipe, std::string_view bytes) {
   return true;
 }
 
-// Ends after `most` bytes: who reads from a child keeps to the child's limit of memory.
+// Stops after `most` bytes: the parent applies the child's memory limit too.
 std::string read_all(int pipe, std::uint64_t most) {
   std::string bytes;
   std::array<char, 65536> block{};
@@ -160,7 +160,7 @@ std::string how_it_ended(int status) {
   return std::string("the reader of this format crashed (") + strsignal(WTERMSIG(status)) + ")";
 }
 
-// A signal that stops this program reaches its children as well: the file is not to blame.
+// A signal that stops this program also reaches its children: the file is not the cause.
 bool was_stopped(int status) {
   if (!WIFSIGNALED(status)) return false;
   const int signal = WTERMSIG(status);
@@ -173,21 +173,21 @@ void require_good_end(const std::string& message, int status, const std::string&
   if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it again");
 }
 
-// The result in a message, or the exception that it stands for.
+// The result in a message, or the exception that it encodes.
 std::string result_in(std::string message, int status, const std::string& file) {
   require_good_end(message, status, file);
   const char kind = message[0];
   std::string content = std::move(message.erase(0, 1));
   if (kind == sends_result) return content;
   if (kind == sends_refusal) {
-    // The text of an InputError begins with its place, which the constructor adds.
+    // The text of an InputError begins with its place, which the constructor adds again.
     const std::string place = file + ": ";
     throw InputError(file, content.starts_with(place) ? content.substr(place.size()) : content);
   }
   throw InputError(file, "cannot be read: " + content + "\nhint: export it again");
 }
 
-// A file in memory with the text, to be read from its beginning.
+// A memory file with the text, positioned at its start.
 int file_with(const std::string& text) {
   const int file = memfd_create("patchlight", MFD_CLOEXEC);
   if (file < 0 || !write_all(file, text) || lseek(file, 0, SEEK_SET) != 0) {
@@ -196,13 +196,13 @@ int file_with(const std::string& text) {
   return file;
 }
 
-// The message of a child, and how it ended.
+// The message of a child, and its exit status.
 struct Sent {
   std::string message;
   int status = 0;
 };
 
-// The message of a child that calls `run` with its end of a pipe.
+// Runs `run` in a child with the write end of a pipe, and returns its message.
 Sent sent_by_child(const std::function<int(int)>& run, std::uint64_t most_bytes) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");

@@ -18,7 +18,7 @@
 
 namespace patchlight {
 
-/// Puts values one after the other as they lie in memory, for a process of the same program.
+/// Serializes values in their memory layout, for a process of the same program.
 class MessageWriter {
  public:
   template <typename Value>
@@ -51,7 +51,7 @@ class MessageWriter {
   std::string bytes_;
 };
 
-/// Takes them out again in the same order. \throws std::runtime_error where there are none left.
+/// Deserializes them in the same order. \throws std::runtime_error past the end.
 class MessageReader {
  public:
   explicit MessageReader(std::string_view bytes) : bytes_(bytes) {}
@@ -63,7 +63,7 @@ class MessageReader {
     bytes_.remove_prefix(sizeof value);
     return value;
   }
-  /// How many things follow, each of a byte or more.
+  /// The number of following items, each of at least one byte.
   std::size_t count() {
     const auto count = plain<std::size_t>();
     if (count > bytes_.size()) throw std::runtime_error("a message ends early");
@@ -111,23 +111,22 @@ class MessageReader {
   std::string_view bytes_;
 };
 
-/// Limits of a child process. A house of 2 MB takes 0.1 s and 0.1 GB; after a damaged number assimp may read on
-/// without end.
+/// Limits of a child process. A house of 2 MB takes 0.1 s and 0.1 GB; a damaged number may make assimp read forever.
 struct ChildLimits {
-  unsigned seconds = 60;                          ///< of processor time
-  std::uint64_t bytes = std::uint64_t{1} << 30U;  ///< of memory, besides 300 for each byte of the file
+  unsigned seconds = 60;                          ///< processor time
+  std::uint64_t bytes = std::uint64_t{1} << 30U;  ///< memory, in addition to 300 bytes for each byte of the file
 };
 
-/// The bytes that `read` returns in a child process. Libraries that read rich formats can crash on damaged files; then
-/// only the child ends, and nothing that they print reaches the terminal. \throws InputError as `read` does, and naming
-/// `file` when the child crashed, threw anything else or exceeded a limit.
+/// Runs `read` in a child process and returns its bytes. Libraries for complex formats can crash on damaged files. Then
+/// only the child ends, and its output does not reach the terminal. \throws InputError as `read`, or naming `file` when
+/// the child crashed, threw another exception or exceeded a limit.
 std::string bytes_isolated(const std::string& file, const std::function<std::string()>& read,
                            const ChildLimits& limits = {});
 
-/// A program that runs in a child process, without any environment variables.
+/// A program for a child process without environment variables.
 struct Program {
-  std::vector<std::string> command;             ///< its file and its arguments
-  std::vector<std::filesystem::path> readable;  ///< folders that it reads, besides those of the system
+  std::vector<std::string> command;             ///< program file and arguments
+  std::vector<std::filesystem::path> readable;  ///< readable folders in addition to those of the system
 };
 
 /// The standard output of a program that reads `input` from its standard input, under the same limits. It opens no

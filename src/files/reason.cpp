@@ -26,8 +26,8 @@ constexpr const char* too_large = "a size in it needs more memory than there is"
 
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
-// "[json.exception.out_of_range.403] key 'rooms' not found" names the key; other faults have no words but the
-// library's.
+// "[json.exception.out_of_range.403] key 'rooms' not found" names the key; other faults have only the text of the
+// library.
 std::string reason_of_json(const std::string& text) {
   const std::size_t begin = text.find("key '");
   const std::size_t end = begin == std::string::npos ? begin : text.find('\'', begin + 5);

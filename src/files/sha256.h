@@ -5,7 +5,7 @@
 
 namespace patchlight {
 
-/// SHA-256 (FIPS 180-4) of the parts' bytes one after another, as 64 lower-case hexadecimal digits.
+/// SHA-256 (FIPS 180-4) of the concatenated parts, in 64 lower-case hexadecimal digits.
 std::string sha256(std::span<const std::string> parts);
 
 }  // namespace patchlight

@@ -9,7 +9,7 @@
 namespace patchlight {
 namespace {
 
-// A diagnostic on all things of one kind that were left out for one reason.
+// A diagnostic on all parts of one kind that were left out for one reason.
 struct Remark {
   DiagnosticCode code = DiagnosticCode::left_out;
   std::string sentence;

@@ -10,26 +10,26 @@
 
 namespace patchlight {
 
-/// Why readers leave out a face.
+/// The reason for which readers leave out a face.
 inline constexpr const char* too_few_corners = "faces with fewer than three corners, left out";
 
-/// Things of a file that a reader leaves out or simplifies: sentences, each with the names of the objects concerned.
+/// Parts of a file that a reader leaves out or simplifies: sentences with the names of the objects concerned.
 class LeftOut {
  public:
-  /// A note: the file means it so, or the result hardly changes.
+  /// A note: the file intends it, or the result hardly changes.
   void add(const std::string& sentence, const std::string& name, DiagnosticCode code = DiagnosticCode::simplified_part);
 
   /// A loss: the scene lacks a whole object or light source of the file.
   void lose(const std::string& sentence, const std::string& name);
 
-  /// A loss: the scene lacks a face of the object. Its corners, as far as they are known, give the area.
+  /// A loss: the scene lacks a face of the object. The known corners give the area.
   void lose_face(const std::string& sentence, const std::string& object, ModelFace face = {});
 
   /// A loss that takes no area from the scene, e.g. lines and points.
   void lose_without_area(const std::string& sentence, const std::string& name, std::size_t count = 1);
 
-  /// The scene with diagnostics, "sentence: 7 (a, b, c, ...)", with the first five names. They stand in the order of
-  /// the first calls. A face whose object has no polygon in the scene counts as a whole object.
+  /// The scene with diagnostics "sentence: 7 (a, b, c, ...)", with the first five names, in the order of the first
+  /// calls. A face whose object has no polygon in the scene counts as a whole object.
   Scene on(Scene scene) const;
 
  private:

@@ -25,17 +25,17 @@
 namespace patchlight {
 namespace {
 
-// A scene in which these polygons share these of their materials with no others.
+// A scene in which these polygons do not share these materials with other polygons.
 struct OwnMaterials {
   Scene scene;
-  std::vector<std::size_t> materials;  // in the place of those given
+  std::vector<std::size_t> materials;  // copies that replace the given materials
 };
 
 std::string file_of(const Scene& scene, const Polygon& polygon) {
   return polygon.file < scene.files.size() ? scene.files[polygon.file] : scene.file;
 }
 
-// The pattern is of none of the groups and none of these names; `kinds` is "object, group or file".
+// Throws: the pattern matches none of the groups and names; `kinds` is "object, group or file".
 [[noreturn]] void refuse_pattern(const Scene& scene, std::set<std::string> names, const std::string& kinds,
                                  const std::string& pattern, const std::string& where) {
   for (std::uint32_t group = 0; group < scene.groups.size(); ++group) names.insert(group_name(scene, group));
@@ -47,9 +47,9 @@ std::string file_of(const Scene& scene, const Polygon& polygon) {
 
 std::string name_of_file(const std::string& file) { return std::filesystem::path(file).filename().string(); }
 
-// Per polygon whether its object, its group or its file bears this name or matches it as a pattern with * and ?; a
-// file by the last part of its path, or by the whole of it without a pattern. Throws InputError at `where` when that
-// is none.
+// True for each polygon whose object, group or file has this name or matches the pattern with * and ?. Patterns match
+// the last part of a file's path; a plain name may be the whole path. Throws InputError at `where` when nothing
+// matches.
 std::vector<bool> faces_of(const Scene& scene, const std::string& pattern, const std::string& where) {
   std::vector<bool> groups;
   for (std::uint32_t group = 0; group < scene.groups.size(); ++group)
@@ -77,7 +77,7 @@ std::vector<std::size_t> materials_of(const Scene& scene, const std::vector<bool
   return {materials.begin(), materials.end()};
 }
 
-// Gives the polygons copies of materials that others have as well, named after `of`: "Concrete of IfcSlab*".
+// Copies the materials that other polygons also use, named after `of`: "Concrete of IfcSlab*".
 OwnMaterials with_own_materials(Scene scene, const std::vector<bool>& polygons, std::vector<std::size_t> materials,
                                 const std::string& of) {
   std::vector<bool> others = polygons;
@@ -109,7 +109,7 @@ constexpr const char* settable =
     "reflectance, specular_reflectance, transmittance or diffuse_transmittance (0 to 1, or in %), exitance (W/m^2), "
     "radiance (W/(m^2 sr)) or index, as numbers without a unit";
 
-// Advice on a light that is known as a flux: a material's exitance is flux by area.
+// Advice for lights specified by flux: exitance is flux per area.
 std::string advice_on_flux(const std::string& quantity) {
   constexpr std::array words{"flux", "luminous_flux", "lumens", "lumen", "lm", "watts", "watt", "W", "power"};
   if (std::find(words.begin(), words.end(), quantity) == words.end()) return {};
@@ -125,15 +125,15 @@ Quantity quantity_named(const std::string& name, const std::string& text) {
   refuse_setting(text, "'" + name + "' cannot be set; expected " + settable + advice_on_flux(name));
 }
 
-// The form of a quantity's value.
+// The expected form of a value.
 const char* expected_value(Quantity quantity) {
-  if (is_share(quantity)) return "a share from 0 to 1, or in percent, e.g. 30%";
+  if (is_share(quantity)) return "a fraction from 0 to 1, or a percentage, e.g. 30%";
   if (quantity == Quantity::exitance) return "W/m^2 without the unit, e.g. 10";
   if (quantity == Quantity::radiance) return "W/(m^2 sr) without the unit, e.g. 10";
   return expected_index;
 }
 
-// A number, or a share in percent: 0.3 for 30%.
+// A number, or a percentage: 0.3 for 30%.
 std::optional<double> number_or_percent(const std::string& word, Quantity quantity) {
   if (!word.ends_with('%') || !is_share(quantity)) return finite_number(word);
   const std::optional<double> percent = finite_number(trimmed(std::string_view(word).substr(0, word.size() - 1)));
@@ -154,7 +154,7 @@ Spectrum comma_separated(const std::string& list, const std::string& text, Quant
   return Eigen::Map<const Spectrum>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-// One value stands for all bands.
+// One value applies to all bands.
 Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
   if (setting.value.size() == 1) return Spectrum::Constant(bands, setting.value[0]);
   if (setting.value.size() == bands) return setting.value;
@@ -163,8 +163,8 @@ Spectrum spread(const MaterialSetting& setting, Eigen::Index bands) {
                                       std::to_string(bands) + " bands");
 }
 
-// Of light. In bands of wavelengths what is set is linear RGB, spread as colors are that are read: one number makes a
-// lamp that emits as bright as that would be in the bands there are, and leaves how its light is spread.
+// The exitance of a setting. In bands of wavelengths the value is linear RGB and is converted like a color that was
+// read. One number sets the luminance and keeps the spectrum of the lamp.
 Spectrum set_light(const MaterialSetting& setting, const Material& material, const Bands& bands) {
   if (!are_of_wavelengths(bands)) return spread(setting, material.exitance.size());
   const bool is_one = setting.value.size() == 1;
@@ -175,7 +175,7 @@ Spectrum set_light(const MaterialSetting& setting, const Material& material, con
   return light;
 }
 
-// The spectrum of a quantity by wavelength; null for one that has none.
+// The spectrum of a quantity by wavelength; null for quantities without a spectrum.
 std::shared_ptr<const SampledSpectrum>* sampled_of(MaterialSpectra& spectra, Quantity quantity) {
   switch (quantity) {
     case Quantity::reflectance:
@@ -196,7 +196,7 @@ std::shared_ptr<const SampledSpectrum>* sampled_of(MaterialSpectra& spectra, Qua
   return nullptr;
 }
 
-// One number for all bands of a lamp makes it brighter or darker; else what is set takes the place of a spectrum.
+// One number only scales a lamp. Every other value replaces the spectrum.
 MaterialSpectra changed(MaterialSpectra spectra, const MaterialSetting& setting) {
   const bool is_of_lamp = setting.quantity == Quantity::exitance || setting.quantity == Quantity::radiance;
   const bool keeps_spread = is_of_lamp && setting.value.size() == 1;
@@ -205,8 +205,8 @@ MaterialSpectra changed(MaterialSpectra spectra, const MaterialSetting& setting)
   return spectra;
 }
 
-// A value for each band. A pane made by a setting is no mirror of the file's, and the other way round; one of 0
-// takes back the file's own.
+// Sets a value for each band. A setting that makes a pane removes the mirror of the file, and vice versa. The value 0
+// removes the file's own pane or mirror.
 Material with_quantity(Material material, Quantity quantity, const Spectrum& value) {
   const bool is_some = (value > 0).any();
   switch (quantity) {
@@ -242,7 +242,7 @@ Material with_quantity(Material material, Quantity quantity, const Spectrum& val
   return material;
 }
 
-// A reflectance takes the place of a picture, and only opaque matt surfaces have one.
+// A reflectance replaces a texture: only opaque matt surfaces have textures.
 Material changed(Material material, const MaterialSetting& setting, const Bands& bands) {
   material.spectra = changed(std::move(material.spectra), setting);
   if (setting.quantity == Quantity::light_spectrum) return material;
@@ -254,7 +254,7 @@ Material changed(Material material, const MaterialSetting& setting, const Bands&
   return with_quantity(std::move(material), setting.quantity, value);
 }
 
-// The materials that a setting is for, of those that are in question. A pattern does not mean those that are made up.
+// The candidates that a setting matches. Patterns do not match second faces of panes, which readers make up.
 std::vector<std::size_t> chosen(const std::vector<Material>& materials, const std::vector<std::size_t>& candidates,
                                 const MaterialSetting& setting) {
   std::vector<std::size_t> by_pattern;
@@ -272,14 +272,14 @@ std::vector<std::size_t> chosen(const std::vector<Material>& materials, const st
                                       (hint.empty() ? "; expected one of " : " Expected one of ") + listed(names));
 }
 
-// Of all materials.
+// The matching materials among all.
 std::vector<std::size_t> chosen(const std::vector<Material>& materials, const MaterialSetting& setting) {
   std::vector<std::size_t> all(materials.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return chosen(materials, all, setting);
 }
 
-// \throws InputError when a setting gives an index to opaque materials alone.
+// \throws InputError when a setting gives an index to opaque materials only.
 void require_transmittance(const std::vector<Material>& materials, const std::vector<std::size_t>& meant,
                            const MaterialSetting& setting) {
   if (setting.quantity != Quantity::index) return;
@@ -288,12 +288,11 @@ void require_transmittance(const std::vector<Material>& materials, const std::ve
   }
   throw InputError(setting.where, "found the index of refraction " + shortest(setting.value[0]) + " for material '" +
                                       setting.material +
-                                      "', for which no transmittance is given; expected both, as the index tells how "
-                                      "a pane lets light through at an angle. Add read.settings " +
-                                      setting.material + ".transmittance=0.8, or leave the index out");
+                                      "', which has no transmittance; the index needs one\nhint: add read.settings " +
+                                      setting.material + ".transmittance=0.8, or leave out the index");
 }
 
-// Newell's: the scene is not repaired yet.
+// Newell's formula: the scene is not repaired yet.
 double area_of(const Scene& scene, PolygonIndex polygon) {
   const std::vector<Point> points = corner_points(scene, polygon);
   Vector twice = Vector::Zero();
@@ -302,7 +301,7 @@ double area_of(const Scene& scene, PolygonIndex polygon) {
   return twice.norm() / 2;
 }
 
-// For each group and each material whether a pattern means it; the second of a pair. \throws InputError when none is.
+// Groups and materials that match a pattern. \throws InputError when a pattern matches nothing.
 struct Meant {
   std::vector<bool> groups;
   std::vector<bool> materials;
@@ -343,7 +342,7 @@ std::string note_on_rest(const Scene& scene, const std::vector<bool>& stays) {
   }
   return std::to_string(faces) + (faces == 1 ? " face of " : " faces of ") + std::to_string(groups.size()) +
          (groups.size() == 1 ? " object, " : " objects, ") + rounded(100 * area / all, 2) +
-         " % of the area, do not take part, as asked";
+         " % of the area, are left out as requested";
 }
 
 }  // namespace
@@ -356,7 +355,8 @@ bool is_share(MaterialSetting::Quantity quantity) {
 bool is_index(const Spectrum& value) { return value.size() == 1 && value[0] >= 1; }
 
 bool matches(std::string_view name, std::string_view pattern) {
-  // Where the pattern's last star stands, and how much of the name it has taken: tried again with one letter more.
+  // Position of the last star in the pattern, and the number of letters that it matches. After a mismatch it takes one
+  // letter more.
   std::size_t n = 0, p = 0, taken = 0, star = std::string_view::npos;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*') {
@@ -375,7 +375,7 @@ bool matches(std::string_view name, std::string_view pattern) {
 }
 
 Scene with_settings(Scene scene, const std::vector<MaterialSetting>& settings) {
-  std::vector<std::vector<std::size_t>> meant;  // per setting its materials
+  std::vector<std::vector<std::size_t>> meant;  // materials of each setting
   for (const MaterialSetting& setting : settings) {
     if (setting.of.empty()) {
       meant.push_back(chosen(scene.materials, setting));
@@ -421,7 +421,7 @@ Scene with_chosen_faces(Scene scene, const FaceChoice& choice, const std::string
     stays.push_back((choice.only.empty() || only(polygon)) && !leave_out(polygon));
   if (std::find(stays.begin(), stays.end(), true) == stays.end())
     throw InputError(where + (choice.leave_out.empty() ? ".only" : ".leave_out"),
-                     "found no face that stays; expected one at least");
+                     "no face remains; expected at least one");
   if (std::find(stays.begin(), stays.end(), false) == stays.end()) return scene;
   scene.diagnostics.push_back({DiagnosticCode::reduced_model, note_on_rest(scene, stays)});
   std::vector<Polygon> polygons;

@@ -110,8 +110,8 @@ Scene without_doubtful_panes(Scene scene) {
     if (lets_all_through(material)) material = without_stated_pane(std::move(material));
   }
   scene.diagnostics.push_back({DiagnosticCode::assumed_material,
-                               "most materials would let all light through, so these are taken for opaque: " +
-                                   listed(names) + "; read.settings " + names[0] + ".transmittance=1 makes one clear"});
+                               "most materials would transmit all light, so these become opaque: " + listed(names) +
+                                   "; read.settings " + names[0] + ".transmittance=1 makes one clear"});
   for (const UnsimulatedMaterials& glass : counted(0, names.size())) scene.unsimulated.push_back(glass);
   return scene;
 }
@@ -132,9 +132,9 @@ Scene with_stated_panes(Scene scene) {
   if (!panes.empty())
     scene.diagnostics.push_back({DiagnosticCode::read_as_pane, note_on_stated("panes, which let light through", panes,
                                                                               first + ".transmittance", "opaque")});
-  scene.diagnostics = merged({std::move(scene.diagnostics),
-                              note_on(DiagnosticCode::lowered_reflectance,
-                                      "the reflectance of panes is lowered to what they do not let through", darker)});
+  scene.diagnostics = merged(
+      {std::move(scene.diagnostics), note_on(DiagnosticCode::lowered_reflectance,
+                                             "the reflectance of panes is lowered to 1 - transmittance", darker)});
   return scene;
 }
 
@@ -177,7 +177,7 @@ Scene with_stated_mirrors(Scene scene) {
   scene.diagnostics =
       merged({std::move(scene.diagnostics),
               note_on(DiagnosticCode::lowered_reflectance,
-                      "the specular reflectance of mirrors is lowered to what they do not reflect diffusely", darker)});
+                      "the specular reflectance of mirrors is lowered to 1 - diffuse reflectance", darker)});
   return scene;
 }
 

@@ -9,29 +9,28 @@
 
 namespace patchlight {
 
-/// The material of faces for which the file gives none: "default", reflectance 0.5 in all bands.
+/// The material of faces without one in the file: "default", reflectance 0.5 in all bands.
 Material default_material();
 
-/// An empty scene for a format without materials: its only material is the default one, and a note says so.
+/// An empty scene for a format without materials. It has the default material, and a note.
 Scene scene_without_materials(const std::string& file, double metres_per_unit);
 
-/// The scene with only those materials that polygons use, in their order, names that are empty or come twice made
-/// unique: "material 3", "wall (2)".
+/// The scene with only the used materials, in order. Empty and repeated names become unique: "material 3", "wall (2)".
 Scene with_used_materials(Scene scene);
 
-/// How many materials have properties that are not simulated, those that none has left out.
+/// The numbers of materials with properties that are not simulated; kinds with a count of 0 are left out.
 std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass);
 
-/// A spectrum of shares for messages: "0.7", or "0.9, 0.5, 0.2" where bands differ.
+/// A spectrum of fractions for messages: "0.7", or "0.9, 0.5, 0.2" where bands differ.
 std::string listed_shares(const Spectrum& shares);
 
-/// "sentence: a, b", or nothing when there are no names.
+/// "sentence: a, b"; empty without names.
 Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names);
 
 /// Groups of a scene by their names.
 class GroupIndex {
  public:
-  /// The index of the group of that name, which is added to `groups` where it is new.
+  /// The index of the group of that name; a new name is added to `groups`.
   std::uint32_t index_of(const std::string& name, std::vector<std::string>& groups) {
     const auto [found, is_new] = index_.emplace(name, static_cast<std::uint32_t>(groups.size()));
     if (is_new) groups.push_back(name);
@@ -45,7 +44,7 @@ class GroupIndex {
 /// Makes the names of objects unique: "wall", "wall (2)", "wall (3)".
 class UniqueNames {
  public:
-  /// The name, with a number if it was returned before. O(log n), expected.
+  /// The name, with a number if it was returned before. Expected cost O(log n).
   std::string unique(const std::string& name) {
     std::string found = name;
     int& number = last_.emplace(name, 1).first->second;
@@ -58,45 +57,43 @@ class UniqueNames {
   std::map<std::string, int> last_;  ///< number of a name
 };
 
-/// The index of refraction that a file states where a clear material may have it, from ice to diamond; else another
-/// one: programs write 1 for what they do not know.
+/// The index of refraction of a file, if it lies between those of ice and diamond; else `otherwise`. Many programs
+/// write 1 for an unknown index.
 double plausible_index(double stated, double otherwise = usual_index);
 
-/// The transmittance at normal incidence of a pane of an index of refraction that absorbs nothing.
+/// The transmittance at normal incidence of a pane without absorption.
 double highest_transmittance(double index);
 
-/// The material as the pane that a model file makes of it by this statement. Of the transmittance what is not in [0, 1]
-/// becomes the nearest number there.
+/// The material as the pane that a statement of the model file defines. The transmittance is clamped to [0, 1].
 Material as_pane(Material material, const Spectrum& transmittance, double index, std::string statement);
 
-/// The material without the pane that a model file makes of it: opaque.
+/// The material without the pane of the model file: opaque.
 Material without_stated_pane(Material material);
 
-/// The scene of one model file, of which panes that let all light through are opaque where more than half of the
-/// materials are such: programs write that who mean the contrary. A note says so.
+/// The scene of one model file. If more than half of its materials transmit all light, these become opaque, with a
+/// note: some programs write inverted opacities.
 Scene without_doubtful_panes(Scene scene);
 
-/// The scene with all settings, of which the panes that files state reflect no more than what they do not let through.
-/// One note names them and the setting that makes them opaque, another one those that reflect less by that.
+/// The scene after all settings. The reflectance of stated panes is at most 1 - transmittance. One note lists the panes
+/// and the setting that makes them opaque, another note lists lowered reflectances.
 Scene with_stated_panes(Scene scene);
 
-/// The roughness, of glTF and of MTL files with PBR, up to which a surface is taken for smooth.
+/// The largest roughness of a smooth surface in glTF and in MTL files with PBR.
 inline constexpr double most_roughness = 0.05;
 
-/// The metalness, of the same, from which it is taken for metal.
+/// The smallest metalness of a metal in these formats.
 inline constexpr double least_metallic = 0.9;
 
-/// The material as the mirror that a model file makes of it by this statement; what is left of its reflectance is
-/// reflected diffusely besides. Of the shares that are reflected as by a mirror negative ones become 0.
+/// The material as the mirror that a statement of the model file defines. `left` is its diffuse reflectance. Negative
+/// specular reflectances become 0.
 Material as_mirror(Material material, const Spectrum& specular_reflectance, const Spectrum& left,
                    std::string statement);
 
-/// The material without the mirror that a model file makes of it: matt.
+/// The material without the mirror of the model file: matt.
 Material without_stated_mirror(Material material);
 
-/// The scene with all settings, of which the mirrors that files state reflect as mirrors no more than what they do not
-/// reflect diffusely. One note names them and the setting that makes them matt, another one those that reflect less by
-/// that.
+/// The scene after all settings. The specular reflectance of stated mirrors is at most 1 - diffuse reflectance. One
+/// note lists the mirrors and the setting that makes them matt, another note lists lowered values.
 Scene with_stated_mirrors(Scene scene);
 
 }  // namespace patchlight

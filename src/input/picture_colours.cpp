@@ -23,8 +23,8 @@ namespace {
 
 enum class PictureFormat { png, jpeg, bmp, hdr, tga, unknown };
 
-// A TGA has no signature: its second byte states whether it has a palette. JPEG 2000, AVIF and ICO have a 0 there as
-// well, but no image type of a TGA in the third byte, by which stb_image refuses them.
+// A TGA has no signature: its second byte states whether it has a palette. JPEG 2000, AVIF and ICO also have a 0 there,
+// but no valid image type in the third byte, so that stb_image refuses them.
 PictureFormat format_of_picture(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return PictureFormat::png;
   if (bytes.starts_with("\xFF\xD8\xFF")) return PictureFormat::jpeg;
@@ -34,8 +34,8 @@ PictureFormat format_of_picture(std::string_view bytes) {
   return may_be_tga ? PictureFormat::tga : PictureFormat::unknown;
 }
 
-// The bytes as stb_image reads them, which notice whether it wants more than there are: it goes on with zeros. Where
-// these would keep it for ever, as a run of length 0 does in Radiance's pictures, it gets 0xFF instead.
+// Bytes for stb_image, with a record of reads beyond the end. stb_image continues with zeros. In Radiance pictures
+// these are runs of length 0 and loop forever, so that 0xFF is supplied instead.
 class PictureBytes {
  public:
   PictureBytes(std::string_view bytes, bool goes_on) : bytes_(bytes), goes_on_(goes_on) {}
@@ -48,7 +48,7 @@ class PictureBytes {
   }
 
  private:
-  // stb_image reads ahead into a block, which is the first that it fills, and asks for all that it needs otherwise.
+  // stb_image reads ahead into one block, the first that it fills. All other reads request exactly the bytes needed.
   int read(char* to, int size) {
     if (!block_) block_ = to;
     const std::size_t asked = static_cast<std::size_t>(std::max(size, 0));
@@ -82,15 +82,14 @@ constexpr const char* unknown_format = "is neither PNG, JPEG, BMP, TGA nor Radia
 
 std::string fault_of(PictureFormat format, const PictureBytes& bytes) {
   if (!bytes.is_cut_off()) return "cannot be decoded; is it whole?";
-  // stb_image takes a run of the old kind, (1, 1, 1, length), for a pixel, and misses those that it stands for.
-  if (format == PictureFormat::hdr) return "has runs of the old kind, or is cut off";
+  // stb_image takes an old-style run, (1, 1, 1, length), for a pixel and loses the pixels of the run.
+  if (format == PictureFormat::hdr) return "has old-style runs, or is cut off";
   return format == PictureFormat::tga ? "is cut off, if it is a TGA" : "is cut off";
 }
 
 constexpr const char* too_large = "has more than 8192 x 8192 pixels";
 
-// stb_image refuses sizes beyond its own limits as if it did not know the format; its readers name the cause at the
-// header.
+// For sizes beyond its limits stb_image reports an unknown format. Its header readers report the cause.
 bool is_beyond_limits(std::string_view picture) {
   const stbi_io_callbacks callbacks = PictureBytes::callbacks();
   PictureBytes bytes(picture, false);
@@ -100,8 +99,8 @@ bool is_beyond_limits(std::string_view picture) {
   return !codes && std::strcmp(stbi_failure_reason(), "too large") == 0;
 }
 
-// A few hundred bytes can stand for very many pixels. Width, height and channels as the header states them; a fault
-// where it cannot be read or they are too many.
+// Width, height and channels of the header, checked first: a few hundred bytes can encode a huge picture. Has a fault
+// where the header cannot be read or the picture is too large.
 PicturePixels stated_size(PictureFormat format, std::string_view picture) {
   const stbi_io_callbacks callbacks = PictureBytes::callbacks();
   PictureBytes bytes(picture, false);
@@ -111,7 +110,7 @@ PicturePixels stated_size(PictureFormat format, std::string_view picture) {
     const bool may_be_large = format == PictureFormat::png || format == PictureFormat::jpeg;
     return with_fault(may_be_large && is_beyond_limits(picture) ? too_large : fault_of(format, bytes));
   }
-  // A BMP that runs downwards states a negative height.
+  // A top-down BMP states a negative height.
   const std::uint64_t columns = static_cast<std::uint64_t>(std::max(width, 0));
   const auto rows = static_cast<std::uint64_t>(std::abs(std::int64_t{height}));
   if (columns * rows == 0) return with_fault(fault_of(format, bytes));
@@ -125,26 +124,26 @@ PicturePixels stated_size(PictureFormat format, std::string_view picture) {
   return size;
 }
 
-// Some programs write a fourth byte that the header says means nothing: that of a TGA in bits 0 to 3 of its last byte,
-// that of a BMP by the compression BI_RGB, 0, in the fourth word of the BITMAPINFOHEADER behind the first 14 bytes.
+// Some programs write a fourth byte that the header declares unused: a TGA by bits 0 to 3 of its last header byte, a
+// BMP by the compression BI_RGB, 0, in the fourth word of the BITMAPINFOHEADER after the first 14 bytes.
 bool alpha_means_something(PictureFormat format, std::string_view picture) {
   if (format == PictureFormat::tga) return (static_cast<unsigned char>(picture[17]) & 0xFU) != 0;
   return format != PictureFormat::bmp || picture.substr(30, 4) != std::string_view("\0\0\0\0", 4);
 }
 
-// The 256 values of sRGB to linear.
+// Linear values of the 256 sRGB codes.
 std::array<double, 256> linear_values() {
   std::array<double, 256> values{};
   for (std::size_t k = 0; k < values.size(); ++k) values[k] = linear_of_srgb(static_cast<double>(k) / 255.0);
   return values;
 }
 
-// The linear RGB, and the alpha as a code, of the pixels of a decoded picture.
+// Linear RGB and alpha code of the pixels of a decoded picture.
 class Pixels {
  public:
   explicit Pixels(const PicturePixels& picture) : picture_(picture), linear_(linear_values()) {}
 
-  // Grey alone, or gray and alpha, stands for all three.
+  // Gray pictures have one channel, or two with alpha.
   Rgb operator()(std::size_t pixel) const {
     const std::size_t first = pixel * picture_.channels;
     const std::size_t step = picture_.channels < 3 ? 0 : 1;
@@ -155,7 +154,7 @@ class Pixels {
     const unsigned char* const codes = picture_.codes.get() + first;
     return {linear_[codes[0]], linear_[codes[step]], linear_[codes[2 * step]]};
   }
-  // The mean of red, green and blue as a picture of numbers has them, 0 to 1.
+  // Mean of red, green and blue as stored in a picture of numbers, 0 to 1.
   double number(std::size_t pixel) const {
     const std::size_t first = pixel * picture_.channels;
     const std::size_t step = picture_.channels < 3 ? 0 : 1;
@@ -177,15 +176,15 @@ class Pixels {
 
 Rgb of_texel(const std::array<float, 3>& texel) { return {texel[0], texel[1], texel[2]}; }
 
-// Where a pixel goes when `from` of them become `to`: the texel in which it begins, and the share that lies in it.
+// Reduces `from` pixels to `to` texels: the first texel that a pixel overlaps, and the fraction of the pixel in it.
 std::pair<std::size_t, double> place_in(std::size_t pixel, std::size_t from, std::size_t to) {
   const std::size_t texel = pixel * to / from;
-  // The texel ends at (texel + 1) from / to; whole numbers as long as they can be.
+  // The texel ends at (texel + 1) from / to; integers as long as possible.
   const auto left = static_cast<double>((texel + 1) * from - pixel * to) / static_cast<double>(to);
   return {texel, std::min(1.0, left)};
 }
 
-// The means over equal parts of a picture, as few that there are at most `most`.
+// Means over equal parts of a picture, reduced by the smallest integer factor that leaves at most `most` texels.
 template <typename Colours>
 Texture means_over_parts(const Colours& colours, std::size_t width, std::size_t height, std::size_t most) {
   std::size_t times = 1;
@@ -222,7 +221,7 @@ Rgb sum_of(const Rgb& a, const Rgb& b) { return {a[0] + b[0], a[1] + b[1], a[2] 
 
 Rgb times(double factor, const Rgb& colour) { return {factor * colour[0], factor * colour[1], factor * colour[2]}; }
 
-// Null where all of the picture is opaque.
+// Null for opaque pictures.
 std::shared_ptr<const AlphaColours> alpha_colours(const Pixels& pixels, std::size_t count) {
   AlphaColours found;
   for (std::size_t pixel = 0; pixel < count; ++pixel) {
@@ -257,7 +256,7 @@ DecodedPicture picture_of(const PicturePixels& decoded, std::size_t most_texels)
   return picture;
 }
 
-// Files that may be read and are there, with their bytes, and the faults of the others.
+// Readable files with their bytes, and the faults of the others.
 struct PictureFiles {
   std::vector<std::pair<std::string, std::string>> bytes;
   std::map<std::string, std::string> faults;
@@ -276,12 +275,12 @@ PictureFiles read_files(const std::vector<std::filesystem::path>& files, const s
   return read;
 }
 
-// So many texels are kept of each of so many pictures.
+// Number of texels kept of each picture.
 std::size_t texels_of_one_of(std::size_t pictures) {
   return std::max(std::min(most_texels_of_picture, most_texels_of_model / pictures), std::size_t{1});
 }
 
-// A mask as numbers in a row, and back.
+// Converts a mask to a row of numbers, and back.
 Spectrum numbers_of_mask(const DecodedPicture& picture) {
   if (!picture.alpha) return Spectrum::Constant(1, picture.number);
   const Coverage coverage = coverage_by(*picture.alpha, [](double alpha) { return alpha; });
@@ -356,7 +355,7 @@ double linear_of_srgb(double value) {
 }
 
 Coverage coverage_by(const AlphaColours& picture, const std::function<double(double)>& covered) {
-  // Pixels are counted and divided by once: all of them are a share of 1, without rounding.
+  // Counting pixels and dividing once makes full coverage exactly 1, without rounding.
   double covering = 0;
   std::size_t all = 0;
   Rgb sum{};
@@ -391,7 +390,7 @@ PictureColours picture_colours(const std::vector<std::filesystem::path>& files, 
   colours.faults = std::move(read.faults);
   const auto& pictures = read.bytes;
   if (pictures.empty()) return colours;
-  // The result of the child process comes back as a scene: a material for each picture, and a group for each fault.
+  // The child process returns a scene: a material for each picture and a group for each fault.
   const std::size_t most = texels_of_one_of(pictures.size());
   const auto decode = [&] {
     Scene scene;
@@ -433,7 +432,7 @@ std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const E
                                std::uint32_t line) {
   if (!(area_vector(corners).norm() > 0)) return no_texture_map;
   const bool known = places.size() == corners.size() && std::all_of(places.begin(), places.end(), [](const auto& at) {
-                       return at.allFinite() && at.cwiseAbs().maxCoeff() <= 1e9;  // farther away a texel is too small
+                       return at.allFinite() && at.cwiseAbs().maxCoeff() <= 1e9;  // beyond that a texel is too small
                      });
   const std::optional<TextureMap> map = known ? map_of(corners, places) : std::nullopt;
   if (!map) {
@@ -441,7 +440,10 @@ std::uint32_t MappedFaces::add(std::span<const Point> corners, std::span<const E
     return no_texture_map;
   }
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    if ((map->linear * corners[k] + map->offset - places[k]).norm() <= 1e-3) continue;  // six digits leave less open
+    if ((map->linear * corners[k] + map->offset - places[k]).norm() <= 1e-3)
+      continue;  // six-digit numbers leave less
+                 // texture points have six
+                 // digits
     count(bent_, line);
     break;
   }
@@ -472,11 +474,12 @@ std::string MappedFaces::sentence(const Faces& faces, const std::string& what) c
 Diagnostics MappedFaces::notes() const {
   Diagnostics notes;
   if (without_.count > 0)
-    notes.push_back({DiagnosticCode::simplified_picture,
-                     sentence(without_, "faces whose corners have no good place in their picture, whose mean counts")});
+    notes.push_back(
+        {DiagnosticCode::simplified_picture,
+         sentence(without_, "faces without valid texture coordinates, which use the mean of their picture")});
   if (bent_.count > 0)
     notes.push_back({DiagnosticCode::simplified_picture,
-                     sentence(bent_, "faces over which a picture is bent, which is taken as straight")});
+                     sentence(bent_, "faces with a distorted picture, which is replaced by an undistorted one")});
   return notes;
 }
 

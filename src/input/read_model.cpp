@@ -22,8 +22,8 @@
 namespace patchlight {
 namespace {
 
-// Reads an XML file by its first element: <scene> is a Mitsuba scene, <gbXML> a building. Throws InputError naming
-// the file and the line.
+// Reads an XML file by its first element: <scene> is a Mitsuba scene, <gbXML> a building. Throws InputError with file
+// and line.
 Scene read_xml(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   const XmlFile xml = read_xml_file(file, file.string());
   const std::string root = xml.document.document_element().name();
@@ -54,7 +54,7 @@ Scene read_format(const std::filesystem::path& file, const std::string& format, 
                    "the extension '." + format + "' is not known; expected one of " + allowed_extensions());
 }
 
-// With the given unit instead of that of the file, which states one unless it is XML of Mitsuba.
+// Reads the file in the given unit. Without one, the file's unit holds, except for Mitsuba XML, which has none.
 Scene read_in_unit(const std::filesystem::path& file, const std::string& format, std::optional<double> metres_per_unit,
                    const std::filesystem::path& confine) {
   if (format == "ifc") return read_ifc(file, metres_per_unit);
@@ -62,7 +62,7 @@ Scene read_in_unit(const std::filesystem::path& file, const std::string& format,
   const bool states_unit = std::find(stating.begin(), stating.end(), format) != stating.end();
   if (!states_unit) return read_format(file, format, metres_per_unit.value_or(1), confine);
   Scene scene = read_format(file, format, 1, confine);
-  // Mitsuba states neither its unit nor the upright axis, the others both.
+  // Mitsuba states neither unit nor vertical axis; the other formats state both.
   scene.unit_stated = scene.up_stated && !metres_per_unit;
   if (!metres_per_unit) return scene;
   double stated = scene.metres_per_unit;
@@ -72,7 +72,7 @@ Scene read_in_unit(const std::filesystem::path& file, const std::string& format,
   return scene;
 }
 
-// "; did you mean 'room.obj'?" when its folder has a file of such a name; nothing where it cannot be read.
+// "; did you mean 'room.obj'?" when the folder has a similar file; empty when the folder cannot be read.
 std::string near_file(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::vector<std::string> names;
@@ -103,7 +103,7 @@ bool same_values(const Material& a, const Material& b) {
          same_values(a.diffuse_transmittance, b.diffuse_transmittance);
 }
 
-// The scene with another one's materials added; `index` has their places in the scene.
+// A scene with the materials of another one added; `index` maps those to indices in the scene.
 struct MergedPalette {
   std::vector<Material> materials;
   Diagnostics notes;
@@ -141,7 +141,7 @@ MergedPalette with_materials(std::vector<Material> materials, const Scene& added
   return palette;
 }
 
-// The first scene with the second added; its polygons come from file number `file`.
+// Appends the second scene to the first; the new polygons come from file number `file`.
 Scene joined(Scene scene, Scene added, std::uint32_t file) {
   const auto vertices = static_cast<std::uint32_t>(scene.vertices.size());
   const auto maps = static_cast<std::uint32_t>(scene.texture_maps.size());

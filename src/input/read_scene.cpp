@@ -64,8 +64,7 @@ Scene in_asked_bands(Scene scene, const std::vector<double>& edges_nm) {
   const double error = colour_error(scene, edges_nm);
   scene = in_wavelength_bands(std::move(scene), edges_nm);
   scene.band_choice = BandChoice{
-      true,
-      has + "; " + bands_in_words(number) + " are asked for, colours are off by up to " + rounded(error, 2) + " dE00",
+      true, has + "; " + bands_in_words(number) + " requested; color errors are at most " + rounded(error, 2) + " dE00",
       "the solution has " + bands_in_words(number) + " instead of 3"};
   return scene;
 }
@@ -75,30 +74,29 @@ Scene in_needed_bands(Scene scene, double color_error) {
   const BandsWithError chosen = bands_within(scene, color_error);
   const std::size_t number = chosen.edges_nm.size() - 1;
   scene = with_alike_bands_joined(in_wavelength_bands(std::move(scene), chosen.edges_nm));
-  std::string reason = has + "; with " + bands_in_words(number) + " colours are off by up to " +
-                       rounded(chosen.color_error, 2) + " dE00, " + shortest(color_error) + " is asked for";
+  std::string reason = has + "; with " + bands_in_words(number) + " color errors are at most " +
+                       rounded(chosen.color_error, 2) + " dE00, the limit is " + shortest(color_error);
   if (scene.bands.size() < number)
-    reason += "; nothing tells some of them apart, so that " + bands_in_words(scene.bands.size()) + " remain";
+    reason += "; equal ones are merged, and " + bands_in_words(scene.bands.size()) + " remain";
   scene.band_choice =
       BandChoice{true, std::move(reason), bands_in_words(scene.bands.size()) + " instead of 400, one for each nm"};
   return scene;
 }
 
-// The scene, which is in linear RGB, in the bands that are asked for, and Scene::band_choice, which says why. Nothing
-// changes where nothing has a spectrum by wavelength and no bands are asked for.
+// Converts the scene from linear RGB to the requested bands; Scene::band_choice records the reason. Without spectra and
+// requested bands nothing changes.
 Scene with_bands(Scene scene, const BandsAsked& asked) {
   if (!asked.edges_nm.empty()) return in_asked_bands(std::move(scene), asked.edges_nm);
   if (!has_spectra(scene)) return scene;
   if (!asked.rgb) return in_needed_bands(std::move(scene), asked.color_error);
   const std::string has = what_has_spectra(scene);
   scene = in_rgb(std::move(scene));
-  scene.band_choice = BandChoice{false, has + "; linear RGB is asked for, in which they count by their colours",
-                                 "3 bands; colours of light that is reflected more than once may be off"};
+  scene.band_choice = BandChoice{false, has + "; linear RGB is requested, which uses only their colors",
+                                 "3 bands; colors of light after several reflections may be wrong"};
   return scene;
 }
 
-// The scene with its vertices moved, in meters. A mirrored polygon is walked the other way round, so that its front
-// stays the front.
+// Moves the vertices, in meters. A reflection reverses the order of corners, so that fronts stay fronts.
 Scene placed(Scene scene, const Eigen::Affine3d& placement) {
   for (Point& vertex : scene.vertices) vertex = placement * vertex;
   for (SensorGroup& group : scene.sensors) {
@@ -135,7 +133,7 @@ Scene placed(Scene scene, const Eigen::Affine3d& placement) {
 
 Spectrum irradiance_for(double illuminance) { return Spectrum::Constant(1, illuminance / luminous_efficacy); }
 
-// Refuses settings that exclude each other, or lack another one.
+// Refuses settings that contradict or require each other.
 void require_consistent(const DaylightSetting& setting) {
   if (setting.weather && (setting.sky || setting.sun))
     throw InputError("read.daylight.weather", std::string("cannot be used with ") +
@@ -171,13 +169,13 @@ SkyEntry sky_entry(const DaylightSetting& setting) {
   return {SkyKind::perez, {}, measured, {}};
 }
 
-// True when a sky, a sun or a weather file is asked for.
+// True when the setting has a sky, a sun or a weather file.
 bool asks_for_daylight(const DaylightSetting& setting) {
   return setting.sky || setting.sun || setting.weather || setting.ground_reflectance;
 }
 
-// Sun and sky of a setting. The weather file must lie in the folder `confine`, if there is one. Throws InputError
-// naming a field of read.daylight, or the file and line.
+// Sun and sky of a setting. The weather file must lie in the folder `confine`, if given. Throws InputError with a field
+// of read.daylight, or file and line.
 LightEntries lights_of(const DaylightSetting& setting, const std::filesystem::path& confine) {
   require_consistent(setting);
   LightEntries lights;
@@ -200,7 +198,7 @@ Scene set_upright(Scene scene, const ReadOptions& options) {
   return scene;
 }
 
-// The first entry that depends on the upright axis: "the sky", for example; empty if there is none.
+// The first entry that depends on the vertical axis, e.g. "the sky"; empty if there is none.
 std::string upright_part(const LightEntries& lights) {
   const auto hangs_down = [](const LuminaireEntry& entry) {
     const auto& light = entry.luminaire.light;
@@ -230,7 +228,7 @@ std::string upright_part(const ReadOptions& options, const std::vector<SceneFile
   return part;
 }
 
-// With a problem where `part` of the scene depends on a guess.
+// Adds a problem if `part` of the scene depends on a guessed axis.
 Scene with_guess_of_up(Scene scene, const std::string& part) {
   std::erase_if(scene.diagnostics,
                 [](const Diagnostic& problem) { return problem.code == DiagnosticCode::guessed_up; });
@@ -243,7 +241,7 @@ Scene with_guess_of_up(Scene scene, const std::string& part) {
   return scene;
 }
 
-// Says why the faces were left out, if there were any.
+// Throws, with the reasons why faces were left out.
 [[noreturn]] void refuse_for_lack_of_faces(const Scene& scene) {
   std::string reasons, others;
   for (const Diagnostic& found : scene.diagnostics) {
@@ -277,7 +275,7 @@ FileModel read_entry(const ModelEntry& model, const std::filesystem::path& confi
   return read;
 }
 
-// The scene of a scene file's models, with the rest of that file.
+// Applies the rest of a scene file to the scene of its models.
 Scene with_scene_file(Scene scene, const SceneFile& file) {
   if (scene.files.empty()) scene.files = {scene.file};
   scene.file = file.file;
@@ -286,12 +284,12 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   scene.metres_per_unit = 1;
   if (file.up) scene.up = *file.up;
   scene.up_stated = scene.up_stated || file.up;
-  // Of views with one name the first counts.
+  // If several views share a name, the first one is used.
   scene.cameras.insert(scene.cameras.begin(), file.cameras.begin(), file.cameras.end());
   return with_settings(std::move(scene), file.settings);
 }
 
-// The daylight that is asked for, in the place of that of the files.
+// Replaces the sun, the sky or both of the files by those of the options.
 Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
   if (!asks_for_daylight(options.daylight)) return scene;
   if (options.daylight.weather || options.daylight.sun) scene.sun.reset();
@@ -302,12 +300,12 @@ Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
   return with_lights(std::move(scene), lights);
 }
 
-// The daylight that is asked for instead of that of the scene.
+// Replaces all daylight of the scene by that of the options.
 Scene with_other_daylight(Scene scene, const ReadOptions& options) {
   scene.sun.reset();
   scene.sky.reset();
   if (!are_of_wavelengths(bands_of(scene))) return with_daylight(std::move(scene), options, true);
-  // Daylight is stated in linear RGB, the materials are already in bands.
+  // Daylight is given in linear RGB, but the materials are already in bands.
   Scene lit;
   lit.file = scene.file;
   lit.up = scene.up;
@@ -331,7 +329,7 @@ bool asks_for_new_light(const ReadOptions& options) {
          });
 }
 
-// Without details below the size that is asked for, and with coplanar neighbors as one.
+// Removes details below the requested size and joins coplanar neighbors.
 Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
   double detail = options.detail;
   bool keep = options.keep_faces;
@@ -345,7 +343,7 @@ Scene with_fewer_faces(Scene scene, const ReadOptions& options, const std::vecto
   return scene;
 }
 
-// With lamps and luminaires as they are between cleaning and replacing, EN 12464-1; daylight does not age.
+// Applies the maintenance factor of EN 12464-1 to lamps and luminaires; daylight does not age.
 Scene maintained(Scene scene, const ReadOptions& options, const std::vector<SceneFile>& files) {
   std::optional<double> stated = options.maintenance_factor;
   for (const SceneFile& file : files) {
@@ -365,7 +363,7 @@ Scene maintained(Scene scene, const ReadOptions& options, const std::vector<Scen
   return scene;
 }
 
-// Bands as the options ask for them, else as the last scene file does.
+// Bands of the options, else of the last scene file.
 BandsAsked bands_for(const ReadOptions& options, const std::vector<SceneFile>& files) {
   if (options.bands) return *options.bands;
   BandsAsked asked;
@@ -373,7 +371,7 @@ BandsAsked bands_for(const ReadOptions& options, const std::vector<SceneFile>& f
   return asked;
 }
 
-// The sensors that a scene file asks for.
+// Adds the sensors of a scene file.
 Scene with_sensors(Scene scene, const SceneFile& file) {
   for (const auto& entry : file.sensors) {
     if (const auto* const grid = std::get_if<FloorGrid>(&entry)) {
@@ -401,13 +399,13 @@ Scene read_scene(std::span<const std::filesystem::path> files, const ReadOptions
   assert(options.metres_per_unit.value_or(1) > 0 && !files.empty());
   std::vector<Scene> models;
   std::vector<SceneFile> scene_files;
-  RadianceModifiers modifiers;  // of the files so far
+  RadianceModifiers modifiers;  // of the files read so far
   const auto add = [&](FileModel model) {
     models.push_back(std::move(model.scene));
     modifiers = std::move(model.modifiers);
   };
   for (const std::filesystem::path& file : files) {
-    // A user who may read one folder only learns the names of no other.
+    // With a confined folder, messages do not reveal names of other files.
     require_file(file, file.string(), options.confine.empty());
     const std::string format = options.format.empty() ? format_of(file) : options.format;
     if (format == "toml") {
@@ -444,7 +442,7 @@ Scene with_options(Scene scene, const ReadOptions& options) {
   if (are_of_wavelengths(bands_of(scene)) && asks_for_new_light(options))
     scene.diagnostics.push_back(
         {DiagnosticCode::simplified_light,
-         "new light is spread over the bands as its linear RGB under D65, or as the lamp's was; "
+         "the spectrum of new light follows from its linear RGB under D65, or is that of the lamp; "
          "reflectances per band stay averaged over the light of the stored solution"});
   check_limits(scene);
   return scene;

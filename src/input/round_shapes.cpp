@@ -10,10 +10,10 @@ namespace {
 
 constexpr double step = 2 * std::numbers::pi / round_sides;
 
-// The k-th corner of a unit circle around the z axis; those of one circle in steps of `turns` / round_sides.
+// The k-th corner of a unit circle around the z axis; k counts steps of 2 pi / round_sides.
 Vector on_circle(std::uint32_t k) { return {std::cos(step * k), std::sin(step * k), 0}; }
 
-// x and y so that x, y and the axis are right-handed.
+// x and y such that x, y and the axis are right-handed.
 Eigen::Matrix3d frame_of(const Vector& axis) {
   Eigen::Matrix3d frame;
   frame.col(2) = axis.normalized();
@@ -22,7 +22,7 @@ Eigen::Matrix3d frame_of(const Vector& axis) {
   return frame;
 }
 
-// The faces between two circles of corners of which one follows the other, or that have shrunk to a point.
+// Faces between two circles of corners; either circle may be a single point.
 void add_belt(FacetedShape& shape, std::uint32_t low, bool low_is_point, std::uint32_t high, bool high_is_point) {
   for (std::uint32_t k = 0; k < round_sides; ++k) {
     const std::uint32_t next = (k + 1) % round_sides;
@@ -64,23 +64,22 @@ FacetedShape unit_sphere() {
   return shape;
 }
 
-// The factor by which the radii of a truncated cone of n sides have to be larger for its area: with the slant height of
-// a side, sqrt(h^2 + (f d cos(pi / n))^2), d = r_a - r_b, the area of all is n sin(pi / n) (r_a + r_b) f times that,
-// which is to be pi (r_a + r_b) sqrt(h^2 + d^2); a quadratic equation for f^2.
+// Factor f for the radii of a truncated cone with n sides, such that its area equals that of the round cone. With d =
+// r_a - r_b, the slant height of a side is sqrt(h^2 + (f d cos(pi / n))^2). The faceted area is n sin(pi / n) (r_a +
+// r_b) f times that; the round area is pi (r_a + r_b) sqrt(h^2 + d^2). Equality is a quadratic equation in f^2.
 double cone_factor(double height, double difference) {
   const double sides = round_sides * std::sin(step / 2) / std::numbers::pi;
   const double inclined = std::pow(difference * std::cos(step / 2), 2);
   const double h2 = height * height;
   const double target = (h2 + difference * difference) / (sides * sides);
-  // inclined u^2 + h^2 u = target, in the form that loses no digits for small inclinations
+  // Solves inclined u^2 + h^2 u = target in the form that is stable for small `inclined`.
   return std::sqrt(2 * target / (h2 + std::sqrt(h2 * h2 + 4 * inclined * target)));
 }
 
-// The factor by which the radius of a polygon of n sides has to be larger for a circle's area: n / 2 sin(2 pi / n) f^2
-// = pi.
+// Factor f for the radius of an n-gon with the area of the circle: n / 2 sin(2 pi / n) f^2 = pi.
 double disk_factor() { return std::sqrt(2 * std::numbers::pi / (round_sides * std::sin(step))); }
 
-// Adds a circle of corners, or one point for a radius of 0, and returns the place of its first.
+// Adds a circle of corners, or one point for radius 0, and returns the index of the first.
 std::uint32_t add_circle(FacetedShape& shape, const Point& centre, const Eigen::Matrix3d& frame, double radius) {
   const auto first = static_cast<std::uint32_t>(shape.points.size());
   const std::uint32_t corners = radius == 0 ? 1 : round_sides;

@@ -17,7 +17,7 @@ namespace {
 template <class Value, class Type>
 concept Is = std::same_as<std::remove_const_t<Value>, Type>;
 
-// The members of a type that are sent, in their order.
+// The serialized members of a type, in order.
 auto members_of(Is<Polygon> auto& polygon) {
   return std::tie(polygon.corners, polygon.material, polygon.group, polygon.line, polygon.texture_map,
                   polygon.back_material, polygon.back_texture_map);
@@ -46,7 +46,7 @@ auto members_of(Is<Scene> auto& scene) {
 using TexturePointer = std::shared_ptr<const Texture>;
 using Textures = std::vector<TexturePointer>;
 
-// The pictures of a scene's materials, each once. Materials name them by their index.
+// The distinct textures of a scene's materials. Materials refer to them by index.
 Textures textures_of(const Scene& scene) {
   Textures textures;
   for (const Material& material : scene.materials) {
@@ -118,7 +118,7 @@ TexturePointer read_texture(MessageReader& in) {
   texture.height = in.plain<std::uint32_t>();
   texture.texels = in.texels();
   if (texture.texels.empty() || texture.texels.size() != std::uint64_t{texture.width} * texture.height)
-    throw std::runtime_error("a picture has not the size that it says");
+    throw std::runtime_error("the size of a picture is wrong");
   return std::make_shared<const Texture>(std::move(texture));
 }
 

@@ -10,14 +10,14 @@
 
 namespace patchlight {
 
-/// A scene as bytes, for another process of this program on this machine: vertices, polygons, materials, groups,
-/// diagnostics without their faces, checksum, unit and upright direction.
+/// Serializes a scene for another process of this program on this machine: vertices, polygons, materials, groups,
+/// diagnostics without faces, checksum, unit and vertical axis.
 std::string scene_bytes(const Scene& scene);
 
-/// The scene that scene_bytes() turned into these bytes. \throws std::runtime_error when they are not such bytes.
+/// The inverse of scene_bytes(). \throws std::runtime_error for invalid bytes.
 Scene scene_from_bytes(std::string_view bytes);
 
-/// The scene that `read` returns in a child process, under the limits of bytes_isolated(). \throws InputError.
+/// Runs `read` in a child process under the limits of bytes_isolated(), and returns its scene. \throws InputError.
 Scene read_isolated(const std::string& file, const std::function<Scene()>& read, const ChildLimits& limits = {});
 
 }  // namespace patchlight

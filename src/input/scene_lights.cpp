@@ -13,18 +13,18 @@
 namespace patchlight {
 namespace {
 
-// One value stands for all bands.
+// One value applies to all bands.
 Spectrum spread(const Spectrum& spectrum, Eigen::Index bands) {
   return spectrum.size() == 1 ? Spectrum::Constant(bands, spectrum[0]) : spectrum;
 }
 
-// The part of a direction at right angles to a unit vector, made unit; zero where it points along it.
+// The component of a direction perpendicular to a unit vector, normalized; zero if parallel.
 Vector across(const Vector& direction, const Vector& axis) {
   const Vector part = direction - direction.dot(axis) * axis;
   return part.norm() > tolerance_of_coordinates ? part.normalized() : Vector(Vector::Zero());
 }
 
-// The default: that of the model file, else y where z is up, -z where y is.
+// Default: north of the model file, else y for vertical axis z, and -z for y.
 Vector north_of(const Scene& scene, const LightEntries& lights) {
   const Vector usual = std::abs(scene.up.y()) > 0.5 ? Vector(0, 0, -1) : Vector(0, 1, 0);
   const Vector given = lights.north.value_or(scene.north_stated ? scene.north : usual);
@@ -44,7 +44,7 @@ struct Spread {
 Luminaire luminaire_of(const LuminaireEntry& entry, const Scene& scene, Eigen::Index bands) {
   Luminaire luminaire = entry.luminaire;
   luminaire.aim = entry.aim.value_or(-scene.up);
-  // By default the horizontal angle 0 lies to the east, or to the north for a luminaire that looks east or west.
+  // By default the horizontal angle 0 points east, or north for a luminaire that is aimed east or west.
   const Vector east = scene.north.cross(scene.up);
   Vector zero = across(entry.zero_plane.value_or(east), luminaire.aim);
   if (zero.isZero() && entry.zero_plane) {
@@ -85,14 +85,14 @@ Daylight daylight_of(const LightEntries& lights, const Scene& scene, Eigen::Inde
   return daylight;
 }
 
-// Of the color temperatures that are stated.
+// Adds the spectra of the stated color temperatures.
 Daylight with_spectra(Daylight daylight, const LightEntries& lights) {
   if (daylight.sun && lights.sun) daylight.sun->spectrum = lights.sun->spectrum;
   if (daylight.sky && lights.sky) daylight.sky->spectrum = lights.sky->spectrum;
   return daylight;
 }
 
-// The irradiance of open level ground.
+// The irradiance of open horizontal ground.
 Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
   Spectrum irradiance = Spectrum::Zero(bands);
   if (daylight.sky) irradiance += daylight.sky->horizontal_irradiance;

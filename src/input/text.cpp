@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 
-// Everything up to the end, at most 1 GiB: more than any model that can be solved, and less than the memory of a
-// machine. `what` is for messages.
+// Reads to the end, at most 1 GiB: more than any solvable model needs. `what` names the file in messages.
 std::string read_to_end(std::istream& stream, const std::string& where, const std::string& what) {
   std::string text;
   std::vector<char> block(1U << 16U);
@@ -125,7 +124,7 @@ std::string_view trimmed(std::string_view line) {
 }
 
 std::optional<double> finite_number(std::string_view word) {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // std::from_chars knows no plus sign
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);  // std::from_chars accepts no plus sign
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;

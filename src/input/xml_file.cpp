@@ -26,7 +26,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
   add(0x80U | (code & 0x3FU));
 }
 
-// RFC 2781: two of 0xD800 to 0xDBFF and 0xDC00 to 0xDFFF are one character. Halves without a pair become the
+// RFC 2781: a pair of 0xD800 to 0xDBFF and 0xDC00 to 0xDFFF encodes one character. Unpaired halves become the
 // replacement character.
 std::string from_utf16(std::string_view bytes, bool little_endian) {
   const auto unit = [&](std::size_t k) {
@@ -49,7 +49,7 @@ std::string from_utf16(std::string_view bytes, bool little_endian) {
   return text;
 }
 
-// By the byte order mark, or by the zero beside the "<" that every file begins with.
+// Detects the encoding from the byte order mark, or from the zero beside the initial "<".
 std::string as_utf8(std::string_view bytes) {
   const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
   using namespace std::string_view_literals;
@@ -79,7 +79,7 @@ XmlFile read_xml_file(const std::filesystem::path& file, const std::string& wher
       xml.document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result)
     throw InputError(at_line(file, line_at_offset(xml.line_starts, result.offset)),
-                     "is no good XML: " + std::string(result.description()) + "\nhint: export it again");
+                     "is not valid XML: " + std::string(result.description()) + "\nhint: export it again");
   return xml;
 }
 

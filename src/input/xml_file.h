@@ -9,16 +9,16 @@
 
 namespace patchlight {
 
-/// An XML file. Its nodes belong to it.
+/// An XML file. It owns its nodes.
 struct XmlFile {
   std::string file;
   std::string bytes;                     ///< for the checksum
-  std::vector<std::size_t> line_starts;  ///< of its text in UTF-8
+  std::vector<std::size_t> line_starts;  ///< offsets in its UTF-8 text
   pugi::xml_document document;
 };
 
-/// Reads a file in UTF-8 or UTF-16. \throws InputError at `where` when it cannot be read, and naming the file and the
-/// line where it is no good XML.
+/// Reads a file in UTF-8 or UTF-16. \throws InputError at `where` when it cannot be read, or with file and line for
+/// invalid XML.
 XmlFile read_xml_file(const std::filesystem::path& file, const std::string& where);
 
 /// The line of a node of the file, from 1.

@@ -10,7 +10,7 @@
 
 namespace patchlight {
 
-/// A read-only array over memory that `owner` keeps: nothing is copied.
+/// A read-only array over memory of `owner`, without a copy.
 template <class Number>
 pybind11::array array_over(const Number* values, std::vector<pybind11::ssize_t> shape, pybind11::handle owner) {
   pybind11::array array(pybind11::dtype::of<Number>(), std::move(shape), values, owner);
@@ -26,7 +26,7 @@ inline pybind11::array array_over(const Eigen::VectorXd& values, pybind11::handl
   return array_over(values.data(), {values.size()}, owner);
 }
 
-/// The corners of patches as rows of four, which corners_text describes.
+/// The corners of patches as rows of four; see corners_text.
 inline pybind11::array array_over(const std::vector<std::array<std::uint32_t, 4>>& corners, pybind11::handle owner) {
   return array_over(corners.empty() ? nullptr : corners.front().data(),
                     {static_cast<pybind11::ssize_t>(corners.size()), 4}, owner);
@@ -45,13 +45,13 @@ pybind11::array array_over(const std::vector<Number>& values, pybind11::handle o
   return array_over(values.data(), {static_cast<pybind11::ssize_t>(values.size())}, owner);
 }
 
-/// Numbers of any kind, in rows; one column where there is one axis.
+/// Numbers of any kind, in rows; a 1D array is one column.
 using NumbersIn = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
 /// \throws InputError unless there are `rows` rows.
 Field field_of(const NumbersIn& numbers, Eigen::Index rows);
 
-/// A field of its own memory, which the array keeps.
+/// An array that owns the memory of the field.
 pybind11::array array_of(Field field);
 
 }  // namespace patchlight

@@ -25,7 +25,7 @@ namespace py = pybind11;
 
 using ScenePointer = std::shared_ptr<Scene>;
 
-// A word of the command line for each.
+// The command line words of each value.
 template <class Wanted>
 Wanted parsed(const std::vector<std::string>& words) {
   std::vector<const char*> values;
@@ -37,7 +37,7 @@ Wanted parsed(const std::vector<std::string>& words) {
 
 std::vector<double> numbers_of(const Spectrum& spectrum) { return {spectrum.begin(), spectrum.end()}; }
 
-// One number stands for all bands.
+// One number applies to all bands.
 Spectrum spectrum_of(const py::object& numbers, Eigen::Index bands) {
   const NumbersIn array(numbers);
   if (array.size() == 1 && array.ndim() == 0) return Spectrum::Constant(bands, *array.data());
@@ -52,7 +52,7 @@ void bind_spectrum(py::class_<Material>& type, const char* name, Spectrum Materi
       name, [member](const Material& material) { return numbers_of(material.*member); },
       [member](Material& material, const py::object& numbers) {
         material.*member = spectrum_of(numbers, material.reflectance.size());
-        // Stated values replace a picture, as with --set.
+        // A value replaces a texture, like --set.
         if (member != &Material::exitance) material.texture.reset();
       },
       text);
@@ -64,8 +64,9 @@ void bind_material(py::module_& module) {
   bind_spectrum(type, "reflectance", &Material::reflectance, "diffuse, 0 to 1");
   bind_spectrum(type, "exitance", &Material::exitance, "self-emitted, W/m^2: pi times the emitted radiance");
   bind_spectrum(type, "transmittance", &Material::transmittance,
-                "straight through at normal incidence, 0 to 1; empty: opaque");
-  bind_spectrum(type, "specular_reflectance", &Material::specular_reflectance, "as of a mirror, 0 to 1; empty: none");
+                "direct transmittance at normal incidence, 0 to 1; empty: opaque");
+  bind_spectrum(type, "specular_reflectance", &Material::specular_reflectance,
+                "specular (mirror) reflectance, 0 to 1; empty: none");
   bind_spectrum(type, "diffuse_transmittance", &Material::diffuse_transmittance,
                 "out of the other side, 0 to 1; empty: none");
   type.def_readwrite("index", &Material::index, "of refraction, 1 or more");
@@ -94,7 +95,7 @@ py::list problems_of(const Scene& scene) {
   return list;
 }
 
-// By value: other threads may change materials meanwhile.
+// Passed by value: other threads may change materials meanwhile.
 std::string plan_of(Scene scene, const cli::SolveArguments& arguments) {  // NOLINT(performance-unnecessary-value-param)
   const py::gil_scoped_release others;
   const ThreadLimit limit(arguments.request.resources.threads);
@@ -107,9 +108,9 @@ std::string plan_of(Scene scene, const cli::SolveArguments& arguments) {  // NOL
 
 void bind_scene(py::module_& module) {
   bind_material(module);
-  // It remembers what it was read with, see scene.py.
+  // The dynamic attributes hold the reading options, see scene.py.
   py::class_<Scene, ScenePointer>(module, "Scene", py::dynamic_attr(),
-                                  "A model: polygons with materials, in metres. Materials may be changed.")
+                                  "A model: polygons with materials, in meters. Materials can be changed.")
       .def_property_readonly("materials", &materials_of)
       .def_readonly("groups", &Scene::groups)
       .def_readonly("file", &Scene::file)

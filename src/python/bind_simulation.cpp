@@ -24,7 +24,7 @@ namespace {
 
 namespace py = pybind11;
 
-// A solved scene, with its request.
+// A solved scene and its request.
 struct SolvedScene {
   std::shared_ptr<const Scene> scene;
   Request request;
@@ -35,13 +35,13 @@ struct SolvedScene {
 
 using SolvedPointer = std::shared_ptr<SolvedScene>;
 
-// Takes back what was lent.
+// Revokes the transport that a Python function received.
 struct LentUntilTheEnd {
   std::shared_ptr<const RowTransport*> lent;
   ~LentUntilTheEnd() { *lent = nullptr; }
 };
 
-// A function of Python in place of the solver: it gets H = F B as a function, and E, rho and H_direct, and returns H.
+// Calls a Python function as the solver: it gets H = F B as a function, and E, rho and H_direct, and returns H.
 SolveWith solve_by(const py::object& own, const InterruptFlag& flag) {
   return [&own, &flag](const RowTransport& transport, const RadiosityProblem& problem, const SolverOptions&,
                        const Observer&) {
@@ -69,7 +69,7 @@ SolveWith solve_by(const py::object& own, const InterruptFlag& flag) {
                                          " columns; expected one for each of " +
                                          std::to_string(problem.exitance.cols()) + " bands");
     if (!solution.irradiance.allFinite())
-      throw InputError("own solver", "found irradiances that are no finite numbers; expected a number for each patch");
+      throw InputError("own solver", "found irradiances that are not finite; expected a finite number for each patch");
     solution.radiosity = radiosity_from(problem, solution.irradiance);
     solution.direct_irradiance = transport.apply(problem.exitance);
     if (problem.direct_irradiance.size() > 0) solution.direct_irradiance += problem.direct_irradiance;
@@ -84,7 +84,7 @@ SolvedPointer solved(const std::shared_ptr<Scene>& scene, const cli::SolveArgume
   const InterruptFlag flag;
   const Observer observer = InterruptFlag::observer(progress);
   auto result = std::make_shared<SolvedScene>();
-  // Later changes of the scene do not change this.
+  // A copy, so that later changes of the scene have no effect.
   result->scene = std::make_shared<const Scene>(*scene);
   check(*result->scene);
   result->request = arguments.request;
@@ -137,7 +137,7 @@ std::vector<std::string> notes_of(const SolvedScene& self) {
   return texts_of(cli::notes(*self.scene, self.simulation));
 }
 
-// Why results are worse than what was asked for.
+// Reasons why results miss the requested accuracy.
 std::vector<std::string> shortcomings_of(const SolvedScene& self) {
   const Report report = report_of(*self.scene, self.request, self.simulation);
   if (report.solution.unfinished) return {cli::explain_unfinished(report)};
@@ -227,9 +227,9 @@ void bind_simulation(py::module_& module) {
   add(
       "area", "m^2", [](Run run) -> auto& { return run.problem.area; });
   add(
-      "vertices", "metres, vertices x 3", [](Run run) -> auto& { return run.mesh.vertices; });
+      "vertices", "meters, vertices x 3", [](Run run) -> auto& { return run.mesh.vertices; });
   add(
-      "centroid", "metres, patches x 3", [](Run run) -> auto& { return run.mesh.centroid; });
+      "centroid", "meters, patches x 3", [](Run run) -> auto& { return run.mesh.centroid; });
   add(
       "normal", "unit, patches x 3", [](Run run) -> auto& { return run.mesh.normal; });
   add(

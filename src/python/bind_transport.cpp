@@ -25,7 +25,7 @@
 namespace patchlight {
 namespace {
 
-// Form factors between the patches of a scene, and the equations that are solved with them: B = E + R F B.
+// Form factors between the patches of a scene, and the equations B = E + R F B.
 struct TransportProblem {
   PatchMesh mesh;
   RadiosityProblem problem;
@@ -34,8 +34,8 @@ struct TransportProblem {
   std::shared_ptr<const RowTransport> transport;
 };
 
-// Per sensor of the scene (row) and patch the irradiance by a radiosity of 1 of that patch: its form factor with what
-// stands between, as sensors gather it. Not a number for sensors inside walls. Throws Cancelled.
+// For each sensor (row) and patch, the irradiance for unit radiosity of that patch: its form factor including
+// occlusion. NaN for sensors inside walls. Throws `Cancelled`.
 Field sensor_factors(const TransportProblem& problem, const Observer& observer) {
   const Scene& scene = problem.world->scene();
   const Occluder& occluder = problem.world->all_faces();
@@ -54,10 +54,10 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   return factors;
 }
 
-// Traces and closes form factors, and keeps them. Throws InputError, MemoryError, Cancelled.
+// Computes form factors with closure and keeps them. Throws InputError, MemoryError, `Cancelled`.
 TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer) {
-  // 1. The form factors as they are found: a run closes them
+  // 1. The form factors before closure, which a run applies
   check(*scene);
   Request raw = request;
   raw.assembly.close = false;
@@ -69,7 +69,7 @@ TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, co
   const SolveWith take_problem = [&](const RowTransport& transport, const RadiosityProblem& problem,
                                      const SolverOptions&, const Observer&) {
     result.problem = problem;
-    // The lamps' light alone: nobody looks at the solution.
+    // Only the light of the lamps; the solution is not used.
     Solution solution;
     solution.direct_irradiance = transport.apply(problem.exitance);
     solution.irradiance = solution.direct_irradiance;
@@ -188,13 +188,13 @@ void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
     type.def_property_readonly(name, get, text);
   };
   add(
-      "vertices", "metres, vertices x 3", [](Self o) -> auto& { return o.mesh.vertices; });
+      "vertices", "meters, vertices x 3", [](Self o) -> auto& { return o.mesh.vertices; });
   add(
       "corners", corners_text, [](Self o) -> auto& { return o.mesh.corners; });
   add(
       "material", "index into Scene.materials", [](Self o) -> auto& { return o.mesh.material; });
   add(
-      "centroid", "metres, patches x 3", [](Self o) -> auto& { return o.mesh.centroid; });
+      "centroid", "meters, patches x 3", [](Self o) -> auto& { return o.mesh.centroid; });
   add(
       "area", "exposed, m^2", [](Self o) -> auto& { return o.problem.area; });
   add(
@@ -209,7 +209,7 @@ void bind_mesh(py::class_<Owner, std::shared_ptr<Owner>>& type) {
 }  // namespace
 
 void bind_transport(py::module_& module) {
-  py::class_<Solution, std::shared_ptr<Solution>>(module, "Solution", "What a solver has found, and how.")
+  py::class_<Solution, std::shared_ptr<Solution>>(module, "Solution", "The result of a solver, with its history.")
       .def_property_readonly(
           "radiosity", [](const py::object& self) { return array_over(self.cast<const Solution&>().radiosity, self); })
       .def_property_readonly(
@@ -233,10 +233,8 @@ void bind_transport(py::module_& module) {
                              [](const TransportProblem& self) { return self.plan.sides.emit_from_back; })
       .def(
           "sensor_factors", &factors_of_sensors,
-          "The irradiance of each of the scene's sensors (row) by a radiosity of 1 of each patch. Other threads of "
-          "Python run meanwhile. While it works it takes about 32 bytes for each pair of patches, as each is a band of "
-          "its own: 0.35 GB were measured for 3,013 patches, and 10,000 make it 3 GB. 25 sensors took 1.3 s with 749 "
-          "patches and 2.8 s with 3,013 on two busy cores.")
+          "The irradiance of each sensor of the scene (row) for unit radiosity of each patch. Other Python threads run "
+          "meanwhile. Memory: about 32 bytes for each pair of patches, e.g. 3 GB for 10,000 patches.")
       .def("apply", &applied, "H = F B for radiosities B, patches x columns", py::arg("radiosity"))
       .def("form_factors", &factors, "F_ij from patches [begin, end) to patches [begin, end)", py::arg("begin_end"),
            py::arg("to"))

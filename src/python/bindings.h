@@ -4,7 +4,7 @@
 
 namespace patchlight {
 
-/// Scene and materials; the options of the tool.
+/// Scene, materials and options.
 void bind_scene(pybind11::module_& module);
 /// solve(), and the views of a solution.
 void bind_simulation(pybind11::module_& module);

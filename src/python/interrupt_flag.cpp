@@ -30,7 +30,7 @@ InterruptFlag::~InterruptFlag() {
   if (installed_) std::signal(SIGINT, before_);
 }
 
-// A Ctrl-C that came before stops the work when the function has returned.
+// An earlier Ctrl-C stops the work after the function returns.
 InterruptFlag::LeftToPython::LeftToPython(const InterruptFlag& flag) : installed_(flag.installed_) {
   if (installed_) std::signal(SIGINT, flag.before_);
 }
@@ -41,7 +41,7 @@ InterruptFlag::LeftToPython::~LeftToPython() {
 
 Observer InterruptFlag::observer(pybind11::object progress) {
   if (progress.is_none()) return [](const Progress&) { return !asked_to_stop; };
-  // The function is let go of where Python may run, whichever thread that is in.
+  // The function is released with the GIL held, in any thread.
   const std::shared_ptr<pybind11::object> kept(new pybind11::object(std::move(progress)),
                                                [](pybind11::object* function) {
                                                  const pybind11::gil_scoped_acquire lock;

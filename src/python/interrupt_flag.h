@@ -6,8 +6,8 @@
 
 namespace patchlight {
 
-/// While it lives Ctrl-C sets a flag, which its observer sees: Python's own handler would wait for the end of the work,
-/// during which other threads of Python go on. In threads other than Python's main one signals stay as they are.
+/// During its lifetime Ctrl-C sets a flag that the observer checks: Python's own handler would wait for the end of the
+/// work. Other Python threads continue meanwhile. Outside Python's main thread signals stay unchanged.
 class InterruptFlag {
  public:
   InterruptFlag();
@@ -15,8 +15,7 @@ class InterruptFlag {
   InterruptFlag(const InterruptFlag&) = delete;
   InterruptFlag& operator=(const InterruptFlag&) = delete;
 
-  /// While it lives signals are Python's own again: a function of Python's that runs meanwhile ends by
-  /// KeyboardInterrupt.
+  /// During its lifetime Python handles signals itself: Ctrl-C raises KeyboardInterrupt in a Python function.
   class LeftToPython {
    public:
     explicit LeftToPython(const InterruptFlag& flag);
@@ -28,7 +27,7 @@ class InterruptFlag {
     bool installed_;
   };
 
-  /// Stops the work after Ctrl-C, and reports to `progress`, a function of stage and share or None.
+  /// Stops the work after Ctrl-C, and reports stage and fraction to `progress`, a function or None.
   static Observer observer(pybind11::object progress);
 
  private:

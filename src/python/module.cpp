@@ -6,7 +6,7 @@
 namespace patchlight {
 namespace {
 
-// Exceptions with the words of the library's.
+// Exceptions with the messages of the library.
 void bind_errors(pybind11::module_& module) {
   static pybind11::exception<InputError> input(module, "InputError", PyExc_ValueError);
   static pybind11::exception<OutputError> output(module, "OutputError", PyExc_OSError);
@@ -30,7 +30,7 @@ void bind_errors(pybind11::module_& module) {
 }  // namespace
 }  // namespace patchlight
 
-// The part of the module patchlight that is compiled; its users see src/python/patchlight.
+// The compiled part of the module patchlight; users see src/python/patchlight.
 PYBIND11_MODULE(_core, module) {
   patchlight::bind_errors(module);
   patchlight::bind_scene(module);

@@ -144,7 +144,7 @@ class FormFactorsTest(ToolTest):
                                  "--sides", sides)
             self.assertEqual(done.returncode, GOOD, done.stderr)
             self.assertIn(f"source    0.00000  {expected}", done.stdout)
-            self.assertEqual("share of what leaves all of its sides together" in done.stdout + done.stderr,
+            self.assertEqual("fraction of the light from all of its sides" in done.stdout + done.stderr,
                              sides == "both")
 
     def test_every_estimator_finds_about_the_same(self):

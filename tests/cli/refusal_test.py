@@ -40,7 +40,7 @@ class RefusalTest(ToolTest):
         self.assertNotIn("mean", self.run_tool("check", "rom.obj", "--confine", "elsewhere").stderr)
 
     def test_camera(self):
-        for words, named in ((("1,2", "0,0,1", "60"), "such as 4,-3,1.6"), (("1,2,3",), "hint: --camera 4,-3,1.6 0,0,1 60"),
+        for words, named in ((("1,2", "0,0,1", "60"), "e.g. 4,-3,1.6"), (("1,2,3",), "hint: --camera 4,-3,1.6 0,0,1 60"),
                              (("1,2,3", "0,0,1", "up"), "e.g. --camera 4,-3,1.6 0,0,1 60")):
             self.assert_refused(USAGE, ["--camera", named], "solve", "room.obj", "--picture", "room.png", "--camera", *words)
 

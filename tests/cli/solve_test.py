@@ -136,7 +136,7 @@ class SolveTest(ToolTest):
             report = json.loads(self.read("a.json"))
             imbalance = report["energy_balance"]["imbalance"]
             usual = (64 * report["mesh"]["patches"]) ** -0.5
-            found = re.search(r"imbalance (\S+) of the flux(, by the noise of the rays: up to a few times (\S+) is usual)?",
+            found = re.search(r"imbalance (\S+) of the flux(, due to the noise of the rays: up to a few times (\S+) is usual)?",
                               done.stdout)
             self.assertAlmostEqual(float(found[1]) / imbalance, 1, delta=0.1)
             self.assertEqual((found[2] is not None, imbalance > usual / 10), (is_said, is_said), done.stdout)

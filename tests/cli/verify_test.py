@@ -47,10 +47,10 @@ class VerifyTest(ToolTest):
         """Between the verdict and the table: what is stated, then what is found, each once in words."""
         done = self.run_tool("crosscheck", "room.obj", "--patches", 300, "--paths", 512)
         figures = [line.strip() for line in done.stdout.splitlines() if line.startswith("  ")]
-        for figure, tells in zip(figures, (r"bars \S+ % of the light: how far .* is stated to be off",
-                                           r"typical error of a patch .*: how far each by itself is off",
-                                           r"mean difference .*: how far all together are off",
-                                           r"chi-square .*: differences over bars and noise"), strict=True):
+        for figure, tells in zip(figures, (r"bars \S+ % of the light: stated error of .*",
+                                           r"typical error of a patch .*: error of each patch",
+                                           r"mean difference .*: error of the sum",
+                                           r"chi-square .*: sum of squared differences over bars and noise"), strict=True):
             self.assertRegex(figure, tells)
         self.assertRegex(done.stdout, r"\np is the probability .*; below 0.01 they disagree\n")
 

@@ -20,7 +20,7 @@ namespace {
 using FlatPoint = Eigen::Vector2d;
 using FlatRing = std::vector<FlatPoint>;
 
-// The plane of an outline, seen along its normal, with one axis along its longest edge.
+// The plane of an outline, with one axis along the longest edge.
 struct Plane {
   Point origin;
   Vector x, y;
@@ -73,7 +73,7 @@ FlatPoint nearest_on(const FlatRing& outline, const FlatPoint& point) {
   return nearest;
 }
 
-// A ray along x crosses the edges around a point inside an odd number of times.
+// A ray along x from an inside point crosses the edges an odd number of times.
 bool is_inside(const FlatRing& outline, const FlatPoint& point) {
   bool is_odd = false;
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -86,7 +86,7 @@ bool is_inside(const FlatRing& outline, const FlatPoint& point) {
 }
 
 struct Geos {
-  GEOSContextHandle_t context = GEOS_init_r();  // serves one thread
+  GEOSContextHandle_t context = GEOS_init_r();  // one per thread
   Geos() = default;
   ~Geos() { GEOS_finish_r(context); }
   Geos(const Geos&) = delete;
@@ -97,14 +97,14 @@ struct DestroyShape {
   GEOSContextHandle_t context = nullptr;
   void operator()(GEOSGeometry* shape) const { GEOSGeom_destroy_r(context, shape); }
 };
-using Shape = std::unique_ptr<GEOSGeometry, DestroyShape>;  // null where GEOS finds no result
+using Shape = std::unique_ptr<GEOSGeometry, DestroyShape>;  // null where GEOS fails
 
-// Cuts flat shapes by GEOS. A result is null where an argument is.
+// Boolean operations on flat shapes by GEOS. A null argument gives a null result.
 class ShapeCutter {
  public:
   explicit ShapeCutter(double grid) : grid_(grid) {}
 
-  // The area inside a ring, even if that crosses or touches itself.
+  // The area inside a ring, even if the ring crosses or touches itself.
   Shape inside(const FlatRing& ring) const {
     std::vector<double> values;
     for (std::size_t k = 0; k <= ring.size(); ++k)
@@ -151,7 +151,7 @@ class ShapeCutter {
     return all;
   }
 
-  // Its outline, then its holes; the last corner is not repeated.
+  // The outline, then the holes; the last corner is not repeated.
   std::vector<FlatRing> rings_of(const GEOSGeometry* polygon) const {
     std::vector<FlatRing> rings = {corners_of(GEOSGetExteriorRing_r(geos_.context, polygon))};
     for (int k = 0; k < GEOSGetNumInteriorRings_r(geos_.context, polygon); ++k)
@@ -179,7 +179,7 @@ class ShapeCutter {
   double grid_;
 };
 
-// A line across an axis, and the number of holes that it opens.
+// An axis-parallel line, and the number of holes that it opens.
 struct CutLine {
   Eigen::Index axis = 0;
   double at = 0;
@@ -192,7 +192,8 @@ Eigen::AlignedBox2d box_of(const FlatRing& ring) {
   return box;
 }
 
-// Along an edge of the hole if one lies across the axis, so that the cut adds no corner to it; else through its middle.
+// Position of the cut: along an edge of the hole if one is perpendicular to the axis, which adds no corner, else
+// through the middle.
 double place_of_cut(const FlatRing& hole, Eigen::Index axis, double grid) {
   for (std::size_t k = 0; k < hole.size(); ++k) {
     const FlatPoint& a = hole[k];
@@ -202,7 +203,7 @@ double place_of_cut(const FlatRing& hole, Eigen::Index axis, double grid) {
   return box_of(hole).center()[axis];
 }
 
-// Of both axes the line at the hole nearest to the middle that opens more holes.
+// For each axis, a line through the hole nearest to the middle; returns the line that opens more holes.
 CutLine best_cut(const std::vector<FlatRing>& rings, double grid, bool through_middle) {
   const FlatPoint middle = box_of(rings[0]).center();
   std::vector<Eigen::AlignedBox2d> boxes;
@@ -237,7 +238,7 @@ std::size_t holes_in(const ShapeCutter& cutter, const std::vector<Shape>& shapes
   return holes;
 }
 
-// A polygon on both sides of a line; nothing where GEOS fails.
+// The parts of a polygon on both sides of a line; empty where GEOS fails.
 std::vector<Shape> sides_of(const ShapeCutter& cutter, const GEOSGeometry* polygon, Eigen::AlignedBox2d box,
                             const CutLine& line) {
   const FlatPoint margin = FlatPoint::Constant(0.1 * box.diagonal().norm());
@@ -257,7 +258,7 @@ std::vector<Shape> cut_through_holes(const ShapeCutter& cutter, const GEOSGeomet
   return {};
 }
 
-// The outlines of polygons without holes that make up the shape; nothing where GEOS fails.
+// Outlines of polygons without holes that partition the shape; empty where GEOS fails.
 std::optional<std::vector<FlatRing>> simple_parts(const ShapeCutter& cutter, Shape shape) {
   std::vector<FlatRing> parts;
   std::vector<Shape> left;
@@ -280,20 +281,20 @@ std::optional<std::vector<FlatRing>> simple_parts(const ShapeCutter& cutter, Sha
   return parts;
 }
 
-// Openings of an outline, by their boxes.
+// Openings of an outline, with their bounding boxes.
 struct Holes {
   std::vector<FlatRing> rings;
   std::vector<Eigen::AlignedBox2d> boxes;
 };
 
-// Some holes in a part of the outline.
+// The holes in a part of the outline.
 struct HolesInPart {
   Shape part;
   Eigen::AlignedBox2d box;
   std::vector<std::size_t> holes;
 };
 
-// The line at the median of the holes, across the longer side of the box around their centers.
+// The line at the median of the hole centers, across the longer side of their bounding box.
 CutLine median_line(const Holes& holes, const HolesInPart& of) {
   Eigen::AlignedBox2d around;
   for (const std::size_t hole : of.holes) around.extend(holes.boxes[hole].center());
@@ -307,8 +308,7 @@ CutLine median_line(const Holes& holes, const HolesInPart& of) {
   return line;
 }
 
-// Both sides of the line, with the holes that reach into them; nothing where GEOS fails, or where a side has hardly
-// fewer holes.
+// Both sides of the line with their holes; empty where GEOS fails, or where a side keeps almost all holes.
 std::vector<HolesInPart> halved(const ShapeCutter& cutter, const Holes& holes, const HolesInPart& whole) {
   const CutLine line = median_line(holes, whole);
   std::vector<HolesInPart> sides;
@@ -326,9 +326,9 @@ std::vector<HolesInPart> halved(const ShapeCutter& cutter, const Holes& holes, c
   return sides;
 }
 
-// The outlines of polygons without holes that make up the outline without the openings; nothing where GEOS fails. GEOS
-// takes more than linear time, and later passes take the square of the corners of a polygon. The outline is therefore
-// halved until 64 holes are left in each part.
+// Outlines of polygons without holes that partition the outline minus the openings; empty where GEOS fails. The outline
+// is halved until each part has at most 64 holes: GEOS needs more than linear time, and later steps are quadratic in
+// the corners of a polygon.
 std::optional<std::vector<FlatRing>> parts_without(const ShapeCutter& cutter, const FlatRing& outline,
                                                    const Holes& holes) {
   Eigen::AlignedBox2d box = box_of(outline);
@@ -356,12 +356,12 @@ std::optional<std::vector<FlatRing>> parts_without(const ShapeCutter& cutter, co
   return parts;
 }
 
-// Gives flat corners their places in the model.
+// Maps flat corners to their positions in the model.
 class Corners {
  public:
   explicit Corners(const Plane& plane) : plane_(plane) {}
 
-  // The first of several corners at one place counts.
+  // If several corners coincide, the first one is used.
   void add(const FlatPoint& flat, const Point& point) { places_.emplace(step_of(flat), point); }
 
   std::vector<Point> lifted(const FlatRing& ring) const {
@@ -383,7 +383,7 @@ class Corners {
   std::map<Step, Point> places_;
 };
 
-// An opening with its corners near the outline on it.
+// An opening with corners near the outline snapped to it.
 struct SnappedOpening {
   FlatRing ring;
   bool is_beyond = false;

@@ -23,10 +23,10 @@
 namespace patchlight {
 namespace {
 
-// The materials of the two sides of a surface: the front is the side from which its corners run counter-clockwise.
+// Materials of the two sides of a surface. Seen from the front, corners run counter-clockwise.
 struct GbxmlSides {
   Material front;
-  std::optional<Material> back;  // where it is another one
+  std::optional<Material> back;  // only if different
 };
 
 Material matt(const std::string& name, double reflectance) {
@@ -44,7 +44,7 @@ bool is_glazed(const std::string& kind) {
          kind == "SlidingDoor";
 }
 
-// <Transmittance type="Visible">, in percent if it says so.
+// <Transmittance type="Visible">, a fraction or a percentage.
 std::optional<double> visible_transmittance(const pugi::xml_node& type) {
   for (const pugi::xml_node& stated : type.children("Transmittance")) {
     if (std::string_view(stated.attribute("type").value()) != "Visible") continue;
@@ -55,8 +55,8 @@ std::optional<double> visible_transmittance(const pugi::xml_node& type) {
   return std::nullopt;
 }
 
-// The materials of a building by the kinds of its surfaces and openings. Reflectances are those that lighting standards
-// assume for rooms whose colors are not known.
+// Materials of a building by kind of surface and opening. Reflectances are the defaults of lighting standards for rooms
+// of unknown color.
 class GbxmlMaterials {
  public:
   explicit GbxmlMaterials(const XmlFile& xml) {
@@ -64,8 +64,8 @@ class GbxmlMaterials {
       window_types_.emplace(type.attribute("id").value(), type);
   }
 
-  // Of a kind of surface, e.g. InteriorFloor. Level ones have a top, as floors have it, and an underside, as
-  // ceilings; `normal` is that of its front.
+  // The materials of a kind of surface, e.g. InteriorFloor. Horizontal surfaces have a floor on top and a ceiling
+  // below; `normal` is that of the front.
   static GbxmlSides surface(const std::string& kind, const Vector& normal) {
     if (!is_level(kind)) return {matt(kind, kind == "Shade" ? 0.35 : of_walls), std::nullopt};
     const Material top = matt(kind + "-top", 0.2);
@@ -73,8 +73,8 @@ class GbxmlMaterials {
     return normal.z() >= 0 ? GbxmlSides{top, underside} : GbxmlSides{underside, top};
   }
 
-  // Of an opening: a pane where its kind is a window, a skylight or a sliding door, or its windowTypeIdRef names a
-  // type that lets light through; else a door.
+  // The material of an opening. Windows, skylights and sliding doors are panes, as are openings with a transparent
+  // window type. All others are doors.
   Material opening(const pugi::xml_node& opening) {
     const std::string kind = opening.attribute("openingType").value();
     const auto type = window_types_.find(opening.attribute("windowTypeIdRef").value());
@@ -90,7 +90,7 @@ class GbxmlMaterials {
     return pane;
   }
 
-  // Names of windows whose type states no visible transmittance.
+  // Windows whose type has no visible transmittance.
   const std::vector<std::string>& assumed() const { return assumed_; }
 
  private:
@@ -127,17 +127,17 @@ class GbxmlReader {
     }
     scene_.diagnostics.push_back(
         {DiagnosticCode::assumed_material,
-         "reflectances of gbXML are not read, usual ones are taken: walls and doors 0.5, tops of floors and roofs 0.2, "
-         "their undersides and ceilings 0.8, shades 0.35; read.settings changes them, as "
+         "gbXML reflectances are not read. Defaults: walls and doors 0.5, tops of floors and roofs 0.2, "
+         "their undersides and ceilings 0.8, shades 0.35\nhint: read.settings changes them, e.g. "
          "InteriorWall.reflectance=0.7"});
     if (turned_ != 0)
-      scene_.diagnostics.push_back(
-          {DiagnosticCode::north_of_file,
-           "CADModelAzimuth " + rounded(turned_) + " is left out: north is y unless a scene file says otherwise"});
+      scene_.diagnostics.push_back({DiagnosticCode::north_of_file,
+                                    "CADModelAzimuth " + rounded(turned_) +
+                                        " is ignored: north is y\nhint: the key north of a scene file changes it"});
     scene_.diagnostics =
         merged({std::move(scene_.diagnostics),
-                note_on(DiagnosticCode::assumed_material,
-                        "windows without a visible transmittance in their type have 0.7", materials_.assumed())});
+                note_on(DiagnosticCode::assumed_material, "windows whose type has no visible transmittance get 0.7",
+                        materials_.assumed())});
     return left_out_.on(std::move(scene_));
   }
 
@@ -187,12 +187,12 @@ class GbxmlReader {
     if (outline.size() < 3) return left_out_.lose("surfaces without a PolyLoop of three corners, left out", name);
     const CutOutline cut = without_openings(outline, openings, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("surfaces with openings that reach beyond them, cut within the surface", name);
-    if (!cut.is_cut) left_out_.add("surfaces without a clear area, whose openings are not cut", name);
+    if (!cut.is_cut) left_out_.add("surfaces without a computable area, whose openings are not cut out", name);
     const GbxmlSides sides = GbxmlMaterials::surface(kind.empty() ? "Surface" : kind, area_vector(outline));
     if (!cut.parts.empty()) add_polygons(surface, name, cut.parts, sides);
   }
 
-  // An opening that is air is a hole.
+  // Openings of the kind air become holes.
   void add_opening(const pugi::xml_node& opening, const std::vector<Point>& outline) {
     const std::string name = name_of(opening);
     if (std::string_view(opening.attribute("openingType").value()) == "Air") return;
@@ -212,7 +212,7 @@ class GbxmlReader {
   }
 
   MaterialIndex index_of(const Material& material) {
-    // Window types of one name may have different transmittances.
+    // Window types with the same name may differ in transmittance.
     const Spectrum& transmittance = material.transmittance;
     const auto [found, is_new] = materials_by_transmittance_.emplace(
         std::pair(material.name, std::vector<double>(transmittance.begin(), transmittance.end())),
@@ -224,7 +224,7 @@ class GbxmlReader {
     return found->second;
   }
 
-  // The faces of a space: its shell, else what is around it.
+  // The faces of a space: its shell, else the surfaces around it.
   std::vector<std::vector<Point>> faces_of(const pugi::xml_node& space) const {
     std::vector<std::vector<Point>> faces;
     for (const pugi::xml_node& loop : space.child("ShellGeometry").child("ClosedShell").children("PolyLoop")) {
@@ -264,7 +264,7 @@ class GbxmlReader {
   UniqueNames room_names_;
   UniqueNames material_names_;
   std::map<std::pair<std::string, std::vector<double>>, MaterialIndex> materials_by_transmittance_;
-  double turned_ = 0;  // what is up in plan to true north, degrees
+  double turned_ = 0;  // angle between the plan's vertical and true north, degrees
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ double number_in(const HbJson& item, const std::string& key, double otherwise) {
   return found != item.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
-// "r_reflectance" and so on.
+// Reads "r_reflectance" and so on.
 Spectrum bands_of_key(const HbJson& item, const std::string& quantity, double otherwise) {
   return rgb(number_in(item, "r_" + quantity, otherwise), number_in(item, "g_" + quantity, otherwise),
              number_in(item, "b_" + quantity, otherwise));
@@ -43,13 +43,13 @@ std::string text_in(const HbJson& item, const std::string& key) {
   return found != item.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-// The text at a place below the item; empty where there is none.
+// The text at a path below the item; empty if absent.
 std::string text_at(const HbJson& item, const char* place) {
   const HbJson::json_pointer pointer(place);
   return item.contains(pointer) && item.at(pointer).is_string() ? item.at(pointer).get<std::string>() : std::string();
 }
 
-// Transmissivity 0.88 of an interior window and 0.64 of others.
+// Transmissivity 0.88 for interior windows and 0.64 for others.
 const std::map<std::string, std::pair<double, double>>& generic_values() {
   static const std::map<std::string, std::pair<double, double>> values = {
       {"floor", {0.2, 0}},           {"wall", {0.5, 0}},
@@ -70,7 +70,7 @@ Material generic_material(const std::string& kind) {
   return material;
 }
 
-// As Radiance has them; nothing for kinds that are not known.
+// The material of a Radiance modifier; empty for unknown kinds.
 std::optional<Material> material_of(const HbJson& modifier) {
   const std::string type = in_lower_case(text_in(modifier, "type"));
   const std::string name = text_in(modifier, "identifier");
@@ -90,7 +90,7 @@ std::optional<Material> material_of(const HbJson& modifier) {
   return std::nullopt;
 }
 
-// Where a modifier set has the modifier of a kind: its part, and the keys there of what stands outdoors and of other.
+// Position of a kind's modifier in a modifier set: the part, and its keys for outdoor and other faces.
 struct PlaceInSet {
   const char* part;
   const char* outdoors;
@@ -112,22 +112,23 @@ const std::map<std::string, PlaceInSet>& places_in_sets() {
   return places;
 }
 
-// Where honeybee has one generic modifier for several kinds.
+// Honeybee uses one generic modifier for several kinds.
 std::string generic_kind(const std::string& kind, bool outdoors) {
   const bool is_glass = kind == "window" || kind == "operable_window" || kind == "skylight" || kind == "glass_door";
   if (is_glass) return outdoors ? "window" : "interior_window";
   return kind;
 }
 
-// The modifiers of a honeybee model as materials.
+// Converts the modifiers of a honeybee model to materials.
 class HoneybeeModifiers {
  public:
-  // Of a model's "properties"."radiance"; may be null.
+  // `radiance` is the model's "properties"."radiance" and may be null.
   explicit HoneybeeModifiers(const HbJson& radiance) : radiance_(radiance) {}
 
-  // The material of a face, opening or shade: its own modifier, that of the modifier set of its room, or honeybee's
+  // The material of a face, opening or shade: its own modifier, else that of its room's modifier set, else honeybee's
   // generic one. `kind` is one of "floor", "wall", "ceiling", "door", "glass_door", "window", "operable_window",
-  // "skylight", "exterior_shade", "interior_shade", "context"; whether it stands outdoors its boundary condition says.
+  // "skylight", "exterior_shade", "interior_shade", "context". The boundary condition decides whether the item is
+  // outdoors.
   Material material(const HbJson& item, const std::string& set, const std::string& kind) {
     const bool outdoors = text_at(item, "/boundary_condition/type") == "Outdoors";
     std::string name = text_at(item, "/properties/radiance/modifier");
@@ -139,7 +140,7 @@ class HoneybeeModifiers {
     return generic_material(generic_kind(kind, outdoors));
   }
 
-  // Names of modifiers that cannot be carried and are taken for honeybee's generic ones.
+  // Unsupported modifiers, replaced by honeybee's generic ones.
   const std::vector<std::string>& unknown() const { return unknown_; }
 
  private:
@@ -177,7 +178,7 @@ Value value_or(const HbJson& item, const char* key, Value otherwise) {
   return found == item.end() || found->is_null() ? otherwise : found->get<Value>();
 }
 
-// An empty list where there is none.
+// An empty list if absent.
 const HbJson& list_of(const HbJson& item, const char* key) {
   static const HbJson none = HbJson::array();
   const auto found = item.find(key);
@@ -215,8 +216,8 @@ class HoneybeeScene {
     for (const HbJson& view : list_of(radiance_of(model), "views")) add_view(view);
     scene_.diagnostics =
         merged({std::move(scene_.diagnostics),
-                note_on(DiagnosticCode::assumed_material,
-                        "modifiers that cannot be carried, honeybee's generic ones are taken", modifiers_.unknown())});
+                note_on(DiagnosticCode::assumed_material, "unsupported modifiers, replaced by honeybee's generic ones",
+                        modifiers_.unknown())});
     scene_ = left_out_.on(std::move(scene_));
   }
   Scene scene() && { return std::move(scene_); }
@@ -235,7 +236,7 @@ class HoneybeeScene {
     return found->second;
   }
 
-  // Names the objects in lists that this reader does not know.
+  // Reports objects in lists that this reader does not read.
   void report_unread(const HbJson& owner, const std::string& owners, const std::set<std::string>& known) {
     for (const auto& [key, list] : owner.items()) {
       if (!list.is_array() || known.count(key) > 0) continue;
@@ -257,7 +258,7 @@ class HoneybeeScene {
     scene_ = with_parts(std::move(scene_), std::move(polygon), parts);
   }
 
-  // The outlines of lost objects are empty.
+  // The outline of an object; empty for lost objects.
   std::vector<Point> outline_of(const HbJson& item) {
     std::vector<Point> outline = hb_points(item.at("geometry").at("boundary"), metres_);
     if (outline.size() >= 3) return outline;
@@ -271,14 +272,14 @@ class HoneybeeScene {
     return holes;
   }
 
-  // The face of an object without these holes and openings.
+  // Adds an object's face without these holes and openings.
   void add_cut(const HbJson& item, const std::vector<std::vector<Point>>& holes, MaterialIndex material) {
     const std::string name = item.at("identifier").get<std::string>();
     const std::vector<Point> outline = outline_of(item);
     if (outline.empty()) return;
     const CutOutline cut = without_openings(outline, holes, drawing_tolerance);
     if (cut.beyond > 0) left_out_.add("faces with openings that reach beyond them, cut within the face", name);
-    if (!cut.is_cut) left_out_.add("faces without a clear area, whose openings are not cut", name);
+    if (!cut.is_cut) left_out_.add("faces without a computable area, whose openings are not cut out", name);
     add_parts(cut.parts, item, material);
   }
 
@@ -307,7 +308,7 @@ class HoneybeeScene {
     if (mesh.at("faces").empty()) left_out_.lose("meshes without faces, left out", scene_.groups.back());
   }
 
-  // Shades and openings, as one face or as a mesh.
+  // Adds a shade or an opening, given as one face or as a mesh.
   void add(const HbJson& item, const std::string& set, const std::string& kind) {
     const HbJson& geometry = item.at("geometry");
     if (geometry.contains("boundary"))
@@ -335,7 +336,7 @@ class HoneybeeScene {
     return value_or(opening, "is_operable", false) ? "operable_window" : "window";
   }
 
-  // Those between two rooms are in the file twice, back to back.
+  // Adds the openings of a face. Openings between two rooms occur twice in the file, back to back.
   void add_openings(const HbJson& face, const std::string& set) {
     for (const char* const key : {"apertures", "doors"}) {
       for (const HbJson& opening : list_of(face, key)) {
@@ -415,7 +416,7 @@ class HoneybeeScene {
   Scene scene_;
   LeftOut left_out_;
   std::map<std::string, MaterialIndex> material_index_;
-  std::set<std::string> done_;  // openings between rooms
+  std::set<std::string> done_;  // openings between rooms that were added
 };
 
 }  // namespace
@@ -437,7 +438,7 @@ Scene read_hbjson(const std::filesystem::path& file, double metres_per_unit) {
     scene.sha256 = sha256({&bytes, 1});
     return scene;
   } catch (const HbJson::exception& error) {
-    throw InputError(file.string(), "is not a good honeybee model: " + reason_of(error) + "\nhint: export it again");
+    throw InputError(file.string(), "is not a valid honeybee model: " + reason_of(error) + "\nhint: export it again");
   }
 }
 

@@ -33,14 +33,14 @@
 namespace patchlight {
 namespace {
 
-// The picture of the diffuse color of one of assimp's materials.
+// The texture of the diffuse color of an assimp material.
 struct AssimpPicture {
-  std::string file;      // beside the model, as it names it
-  unsigned int set = 0;  // of the meshes' coordinates in pictures
+  std::string file;      // as the model names it, relative to its folder
+  unsigned int set = 0;  // index of the texture coordinates of the meshes
   std::array<Wrap, 2> wrap{};
 };
 
-// By the index of the material.
+// Textures by index of material.
 using AssimpPictures = std::map<unsigned int, AssimpPicture>;
 
 Wrap wrap_of_mode(aiTextureMapMode mode) {
@@ -80,7 +80,7 @@ std::vector<Eigen::Vector2d> places_in(const AssimpPicture& picture, const aiMes
   return places;
 }
 
-// A pane has the mean of its picture.
+// Panes use the mean of their texture.
 Material painted(Material material, const Spectrum& mean, const std::shared_ptr<const Texture>& texture) {
   material.reflectance = mean;
   if (material.stated_pane) material.stated_pane->matt_reflectance = mean;
@@ -89,7 +89,7 @@ Material painted(Material material, const Spectrum& mean, const std::shared_ptr<
   return material;
 }
 
-// Without maps into pictures that are none or have one color.
+// Removes maps into pictures that are missing or have one color.
 Scene with_used_maps(Scene scene) {
   std::vector<TextureMap> maps;
   for (Polygon& polygon : scene.polygons) {
@@ -104,11 +104,10 @@ Scene with_used_maps(Scene scene) {
   return scene;
 }
 
-// The scene of a model file, which assimp read and which has `bytes`, with its pictures. Of a scene with pictures the
-// inputs name that of each material, empty for none; materials with one that are no panes have a texture that stands
-// in its place, and their polygons have maps. Where a picture cannot be read the material stays as it is, without
-// texture, and a note names it. Leaves materials that no polygon uses out, and fills inputs and sha256. Pictures that
-// do not lie in the folder `confine`, if there is one, are not read.
+// Decodes the textures of a scene that assimp read from `bytes`. Scene::inputs names the picture of each material,
+// empty for none. Opaque materials with a picture have a placeholder texture, and their polygons have maps. If a
+// picture cannot be read, the material loses its texture, with a note. Removes unused materials, and fills inputs and
+// sha256. Pictures outside the folder `confine` (if given) are not read.
 Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::filesystem::path& confine) {
   const std::vector<std::filesystem::path> names = std::exchange(scene.inputs, {});
   std::set<std::filesystem::path> files(names.begin(), names.end());
@@ -125,7 +124,7 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
       material.texture.reset();
       scene.diagnostics.push_back(
           {DiagnosticCode::unreadable_picture, "the picture " + file + " of material '" + material.name + "' " +
-                                                   colours.faults.at(file) + "; it is grey instead, reflectance 0.5"});
+                                                   colours.faults.at(file) + "; it is gray instead, reflectance 0.5"});
       continue;
     }
     const auto texture = colours.textures.find(file);
@@ -135,7 +134,7 @@ Scene with_decoded_pictures(Scene scene, const std::string& bytes, const std::fi
   }
   scene.diagnostics =
       merged({std::move(scene.diagnostics), note_on(DiagnosticCode::simplified_picture,
-                                                    "textures of panes are replaced by their mean colour", panes)});
+                                                    "textures of panes are replaced by their mean color", panes)});
   std::vector<std::string> contents = {bytes};
   contents.insert(contents.end(), colours.digests.begin(), colours.digests.end());
   scene.sha256 = sha256(contents);
@@ -148,7 +147,7 @@ Spectrum color(const aiMaterial& material, const char* key, double otherwise) {
   return rgb(found.r, found.g, found.b);
 }
 
-// Besides that of the diffuse color.
+// True for textures of properties other than the diffuse color.
 bool has_other_texture(const aiMaterial& material) {
   for (int type = aiTextureType_DIFFUSE + 1; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     if (material.GetTextureCount(static_cast<aiTextureType>(type)) > 0) return true;
@@ -161,7 +160,8 @@ double number_or(const aiMaterial& material, const char* key, double otherwise) 
   return material.Get(key, 0, 0, found) == aiReturn_SUCCESS ? found : otherwise;
 }
 
-// The transmittance: in COLLADA by the transparent color (opaque="RGB_ZERO"), whose luminance the opacity has already.
+// The transmittance. In COLLADA it follows from the transparent color (opaque="RGB_ZERO"); the opacity already includes
+// its luminance.
 Spectrum let_through(const aiMaterial& material, double opacity) {
   const Spectrum filter = color(material, "$clr.transparent", 1).max(0);
   const double luminance = 0.212671 * filter[0] + 0.715160 * filter[1] + 0.072169 * filter[2];
@@ -169,7 +169,7 @@ Spectrum let_through(const aiMaterial& material, double opacity) {
   return (1 - opacity) / luminance * filter;
 }
 
-// A picture stands in the place of the diffuse color, for which assimp then reports 1.
+// For a textured diffuse color assimp reports 1.
 Material with_place_for_picture(Material material, const AssimpPicture& picture) {
   const Spectrum grey = default_material().reflectance;
   const auto value = static_cast<float>(grey[0]);
@@ -199,9 +199,9 @@ bool is_used(const aiScene& model, unsigned int material) {
   return false;
 }
 
-// The scene with all materials of the model, and with notes on what those that meshes use have that is not simulated.
-// Those with a picture are gray and have one texel; where there are pictures the inputs name them, one for each
-// material, as with_decoded_pictures() takes them.
+// The scene with all materials of the model, and notes on their properties that are not simulated. Textured materials
+// are gray with one texel. If there are pictures, the inputs name one for each material, as with_decoded_pictures()
+// expects.
 Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictures& pictures) {
   std::vector<std::string> ignored;
   for (unsigned int m = 0; m < model.mNumMaterials; ++m) {
@@ -211,13 +211,13 @@ Scene with_assimp_materials(Scene scene, const aiScene& model, const AssimpPictu
   }
   if (!pictures.empty()) scene.inputs.resize(scene.materials.size());
   for (const auto& [m, picture] : pictures) scene.inputs[m] = picture.file;
-  scene.diagnostics =
-      merged({std::move(scene.diagnostics),
-              note_on(DiagnosticCode::simplified_part, "textures of other than diffuse colours are ignored", ignored)});
+  scene.diagnostics = merged(
+      {std::move(scene.diagnostics),
+       note_on(DiagnosticCode::simplified_part, "textures other than those of diffuse colors are ignored", ignored)});
   return scene;
 }
 
-// Leaves only the importers of one extension: assimp would try others whose signature it finds in the file.
+// Keeps only the importers of one extension: assimp would try others by file signature.
 void keep_importer(Assimp::Importer& importer, const std::string& extension) {
   for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
     const std::string extensions = std::string(" ") + importer.GetImporterInfo(k)->mFileExtensions + " ";
@@ -271,7 +271,7 @@ class AssimpCollector {
       scene_.vertices.emplace_back((to_scene * Eigen::Vector4d(p.x, p.y, p.z, 1)).head<3>());
     }
     const std::vector<Eigen::Vector2d> places = places_of(mesh);
-    // A mirrored copy keeps its front where it was: the corners run the other way.
+    // A reflected copy reverses the order of its corners, so that the front stays the front.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
     for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
@@ -306,12 +306,11 @@ class AssimpCollector {
   LeftOut left_out_;
 };
 
-// Reads a COLLADA model with assimp: all faces, in the order of the nodes, with the nodes' transformations.
-// Coordinates pass through single precision, and axes stay as in the file. Diffuse colors become reflectances,
-// emissive colors radiances in W/(m^2 sr), an opacity below 1 makes a pane. Fills vertices (meters), polygons,
-// materials, maps into pictures, groups (names of the nodes), file, metres_per_unit, notes and the inputs, as
-// with_decoded_pictures() takes them. May crash on damaged files: call it within read_isolated(). Throws InputError
-// naming `file`.
+// Reads a COLLADA model with assimp: all faces, in the order of the nodes, with the nodes' transformations. Coordinates
+// have single precision, and axes stay as in the file. Diffuse colors become reflectances, emissive colors radiances in
+// W/(m^2 sr), and an opacity below 1 makes a pane. Fills vertices (meters), polygons, materials, maps into pictures,
+// groups (node names), file, metres_per_unit, notes and inputs for with_decoded_pictures(). May crash on damaged files:
+// call it in read_isolated(). Throws InputError naming `file`.
 Scene assimp_scene(const std::string& bytes, const std::string& file, double metres_per_unit) {
   Assimp::Importer importer;
   keep_importer(importer, "dae");
@@ -335,7 +334,7 @@ Scene assimp_scene(const std::string& bytes, const std::string& file, double met
   return scene;
 }
 
-// The file's <up_axis>: X_UP, Y_UP (also when there is none) or Z_UP. assimp does not report it.
+// The file's <up_axis>: X_UP, Y_UP (the default) or Z_UP. assimp does not report it.
 Vector up_axis(const std::string& text) {
   constexpr std::string_view element = "<up_axis>";
   const std::size_t found = text.find(element);
@@ -345,8 +344,7 @@ Vector up_axis(const std::string& text) {
   return text[value] == 'X' ? Vector::UnitX() : text[value] == 'Z' ? Vector::UnitZ() : Vector::UnitY();
 }
 
-// The ids of geometries that a node places in the scene, as "#id". Walked without recursion, however deep nodes are
-// nested.
+// Ids of the geometries that nodes place in the scene, as "#id". Iterative, because nodes may be nested deeply.
 std::set<std::string> placed_geometries(const pugi::xml_document& document) {
   struct Instances : pugi::xml_tree_walker {
     std::set<std::string> urls;
@@ -360,7 +358,7 @@ std::set<std::string> placed_geometries(const pugi::xml_document& document) {
   return instances.urls;
 }
 
-// assimp skips geometries that are not meshes, and holes of polygons. Geometries that no node places are not lost.
+// assimp skips geometries that are not meshes, and holes of polygons. Unplaced geometries are no loss.
 Scene with_lost_geometry(Scene scene, const std::string& text) {
   LeftOut left_out;
   pugi::xml_document document;
@@ -387,7 +385,7 @@ Scene with_lost_geometry(Scene scene, const std::string& text) {
 Scene read_collada(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
   const std::string bytes = read_text(file, file.string(), "the model file");
   Scene scene = read_isolated(file.string(), [&] { return assimp_scene(bytes, file.string(), metres_per_unit); });
-  // These are decoded in a process of their own: one on which that crashes leaves the model as it is.
+  // A separate child process decodes the pictures: if it crashes, the model keeps its colors.
   scene = with_decoded_pictures(std::move(scene), bytes, confine);
   scene = with_lost_geometry(std::move(scene), bytes);
   scene.up = up_axis(bytes);

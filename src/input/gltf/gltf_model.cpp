@@ -45,7 +45,7 @@ std::size_t number_at(std::string_view bytes, std::size_t place) {
   return number;
 }
 
-// The items of a list; none where there is no list.
+// The items of a list; null if there is no list.
 nlohmann::json::array_t* items_of(nlohmann::json& table, const char* key) {
   return table.is_object() && table.contains(key) ? table[key].get_ptr<nlohmann::json::array_t*>() : nullptr;
 }
@@ -54,8 +54,7 @@ bool has_extension(const nlohmann::json& item, const char* extension) {
   return item.is_object() && item.contains(nlohmann::json::json_pointer(std::string("/extensions/") + extension));
 }
 
-// The JSON that tinygltf accepts: one byte stands for a buffer that is nowhere, and triangles that draco holds name no
-// indices.
+// JSON that tinygltf accepts: a buffer without data gets one byte, and draco triangles lose their indices.
 std::string as_tinygltf_takes_it(const std::string& text) {
   nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (auto* const buffers = items_of(json, "buffers")) {
@@ -92,7 +91,7 @@ std::string word_in(const tinygltf::Value& table, const char* key) {
   return table.Has(key) && table.Get(key).IsString() ? table.Get(key).Get<std::string>() : std::string();
 }
 
-// The bytes of part of a buffer; empty when it does not lie within.
+// Part of a buffer's bytes; empty when out of range.
 std::basic_string_view<unsigned char> part_of(const tinygltf::Model& model, std::size_t buffer, std::size_t offset,
                                               std::size_t length) {
   if (buffer >= model.buffers.size()) return {};
@@ -101,7 +100,7 @@ std::basic_string_view<unsigned char> part_of(const tinygltf::Model& model, std:
   return {data.data() + offset, length};
 }
 
-// The statements of a view, as EXT_meshopt_compression has them.
+// The properties of a view compressed with EXT_meshopt_compression.
 struct PackedView {
   std::string mode;
   std::string filter;
@@ -128,7 +127,7 @@ bool unpack_indices(const PackedView& view, std::basic_string_view<unsigned char
          meshopt_decodeIndexBuffer(into, count, stride, packed.data(), packed.size()) == 0;
 }
 
-// The bytes of a view; empty where it is damaged.
+// The decompressed bytes of a view; empty if damaged.
 std::vector<unsigned char> unpacked(const PackedView& view, std::basic_string_view<unsigned char> packed) {
   if (packed.empty() || view.count == 0 || view.stride == 0 || view.stride > 256 ||
       view.count > (std::size_t{1} << 31U) / view.stride)
@@ -155,7 +154,7 @@ tinygltf::Model with_unpacked_view(tinygltf::Model model, std::size_t index, con
   return model;
 }
 
-// The model with an accessor of plain values of its own.
+// Adds an accessor of plain values with a buffer of its own.
 template <typename Number>
 tinygltf::Model with_values(tinygltf::Model model, int accessor, const std::vector<Number>& values, int components) {
   tinygltf::Buffer buffer;
@@ -180,7 +179,7 @@ bool is_accessor(const tinygltf::Model& model, int accessor) {
   return accessor >= 0 && static_cast<std::size_t>(accessor) < model.accessors.size();
 }
 
-// The mesh that draco decodes from the buffer view that a primitive names; null where that is damaged.
+// Decodes a primitive's draco mesh; null if damaged.
 std::unique_ptr<draco::Mesh> draco_mesh(const tinygltf::Model& model, const tinygltf::Value& packed) {
   const std::size_t view = count_in(packed, "bufferView");
   if (view >= model.bufferViews.size()) return nullptr;
@@ -195,7 +194,7 @@ std::unique_ptr<draco::Mesh> draco_mesh(const tinygltf::Model& model, const tiny
   return decoded.ok() ? std::move(decoded).value() : nullptr;
 }
 
-// Three numbers for each point; empty where they are not known.
+// Three coordinates for each point; empty if unknown.
 std::vector<float> positions_of(const draco::Mesh& mesh, const tinygltf::Value& packed) {
   if (!packed.Has("attributes") || !packed.Get("attributes").Has("POSITION")) return {};
   const draco::PointAttribute* const attribute =
@@ -234,9 +233,9 @@ tinygltf::Model with_unpacked_primitive(tinygltf::Model model, std::size_t mesh,
   return with_values(std::move(model), indices, corners, 1);
 }
 
-// The bytes of a .gltf or .glb file with compressed parts without what tinygltf refuses in them: buffers that are in
-// no file, for what EXT_meshopt_compression unpacks, are made empty, and triangles in KHR_draco_mesh_compression name
-// no indices. Other files as they are.
+// A .gltf or .glb file without the parts of compressed data that tinygltf refuses: placeholder buffers of
+// EXT_meshopt_compression become empty, and triangles of KHR_draco_mesh_compression lose their indices. Other files are
+// unchanged.
 std::string readable_gltf(const std::string& bytes) {
   if (bytes.find(meshopt) == std::string::npos && bytes.find(draco_name) == std::string::npos) return bytes;
   if (!bytes.starts_with("glTF")) return as_tinygltf_takes_it(bytes);
@@ -251,8 +250,8 @@ std::string readable_gltf(const std::string& bytes) {
          bytes.substr(glb_header + 4, 4) + json + rest;
 }
 
-// The model with its compressed parts unpacked: views of buffers by EXT_meshopt_compression, positions and triangles
-// of primitives by KHR_draco_mesh_compression. Throws InputError naming `file` where they are damaged.
+// Unpacks views with EXT_meshopt_compression, and positions and triangles with KHR_draco_mesh_compression. Throws
+// InputError naming `file` if they are damaged.
 tinygltf::Model decompressed(tinygltf::Model model, const std::string& file) {
   for (std::size_t k = 0; k < model.bufferViews.size(); ++k) {
     if (model.bufferViews[k].extensions.count(meshopt) > 0) model = with_unpacked_view(std::move(model), k, file);
@@ -268,7 +267,7 @@ tinygltf::Model decompressed(tinygltf::Model model, const std::string& file) {
 
 constexpr std::string_view glb_signature = "glTF";
 
-// Extensions that a file may require: what they change is simulated, or named in the notes.
+// Required extensions that the reader simulates or mentions in notes.
 bool is_known(const std::string& extension) {
   static constexpr std::array<std::string_view, 8> known = {
       "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual",        "KHR_texture_basisu",
@@ -284,13 +283,13 @@ void require_known_extensions(const tinygltf::Model& model, const std::string& f
   }
 }
 
-// The images by index, and by the digest of their bytes.
+// Images by index, and by the digest of their bytes.
 struct Pictures {
   std::map<int, std::string> digest;
   std::map<std::string, DecodedPicture> by_content;
 };
 
-// Of all of them, the texels that are kept.
+// Reduces all pictures to the number of texels that may be kept.
 void limit_texels(Pictures& pictures) {
   std::size_t texels = 0;
   for (const auto& [digest, picture] : pictures.by_content)
@@ -313,7 +312,7 @@ GltfModel with_pictures(GltfModel model, Pictures pictures) {
   return model;
 }
 
-// Keeps the texels that matter, of the same bytes once. A picture that cannot be decoded is no reason to stop.
+// Keeps a reduced picture, shared by images with the same bytes. A picture that cannot be decoded is not an error.
 bool take_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                 void* into) {
   const std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
@@ -338,7 +337,7 @@ bool read_file(std::vector<unsigned char>* out, std::string* error, const std::s
   }
 }
 
-// A file outside of `confine` counts as there: reading it is refused.
+// Files outside `confine` count as existing: reading them is refused later.
 bool file_exists(const std::string& name, void* parts) {
   try {
     require_within(static_cast<GltfFiles*>(parts)->confine, name, name);
@@ -348,7 +347,7 @@ bool file_exists(const std::string& name, void* parts) {
   }
 }
 
-// One line, without the line ends that tinygltf puts between its sentences.
+// Joins the lines of a tinygltf message.
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -401,8 +400,7 @@ Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
-// KHR_texture_transform: scaled, turned about the origin counter-clockwise, as the picture is seen with v downwards,
-// and moved.
+// KHR_texture_transform: scale, rotate about the origin, counter-clockwise in the picture with v downward, and shift.
 struct TextureTransform {
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
@@ -476,7 +474,7 @@ std::vector<double> accessor_values(const tinygltf::Model& model, int accessor, 
   const int expected_type = components == 1   ? TINYGLTF_TYPE_SCALAR
                             : components == 2 ? TINYGLTF_TYPE_VEC2
                                               : TINYGLTF_TYPE_VEC3;
-  // Each sum is compared in parts, so that none overflows.
+  // Compares each sum in parts, to avoid overflow.
   const std::size_t end = buffer.data.size();
   const bool fits = value_size > 0 && list.type == expected_type && view.byteOffset <= end &&
                     list.byteOffset <= end - view.byteOffset && element <= end - view.byteOffset - list.byteOffset &&

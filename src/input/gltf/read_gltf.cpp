@@ -31,13 +31,13 @@ Spectrum color_factor(const tinygltf::Material& material) {
   return color(material.pbrMetallicRoughness.baseColorFactor, 1);
 }
 
-// The image that a texture shows; -1 when there is none that glTF 2.0 itself defines.
+// The image of a texture; -1 without an image in core glTF 2.0.
 int image_of(const tinygltf::Model& model, int texture) {
   const bool exists = texture >= 0 && static_cast<std::size_t>(texture) < model.textures.size();
   return exists ? model.textures[static_cast<std::size_t>(texture)].source : -1;
 }
 
-// The mean color of a texture; nothing when it is unknown.
+// The mean color of a texture; empty if unknown.
 std::optional<Spectrum> texture_color(const GltfModel& gltf, int texture) {
   const auto found = gltf.mean_color.find(image_of(gltf.model, texture));
   if (found == gltf.mean_color.end()) return std::nullopt;
@@ -49,7 +49,7 @@ Spectrum with_texture(const Spectrum& factor, const GltfModel& gltf, int texture
   return mean ? Spectrum(factor * *mean) : factor;
 }
 
-// A number of an extension of the material, or what holds without it.
+// A number of a material extension, or `otherwise` if absent.
 double number_of(const tinygltf::Material& material, const char* extension, const char* key, double otherwise) {
   const auto found = material.extensions.find(extension);
   if (found == material.extensions.end() || !found->second.Has(key)) return otherwise;
@@ -61,7 +61,7 @@ double transmission(const tinygltf::Material& material) {
   return std::clamp(number_of(material, "KHR_materials_transmission", "transmissionFactor", 0), 0.0, 1.0);
 }
 
-// The alpha of the base color's picture; null where it is 1 all over, or unknown.
+// The alpha of the base color texture; null if opaque or unknown.
 const AlphaColours* alpha_picture(const GltfModel& gltf, const tinygltf::Material& material) {
   const int image = image_of(gltf.model, material.pbrMetallicRoughness.baseColorTexture.index);
   const auto found = gltf.alpha.find(image);
@@ -73,14 +73,13 @@ double alpha_factor(const tinygltf::Material& material) {
   return factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1;
 }
 
-// A picture states where the surface is: glTF 2.0 section 3.9.4.
+// The texture cuts out the surface: glTF 2.0 section 3.9.4.
 bool is_cut_out(const GltfModel& gltf, const tinygltf::Material& material) {
   const bool heeds_alpha = material.alphaMode == "MASK" || material.alphaMode == "BLEND";
   return heeds_alpha && alpha_picture(gltf, material);
 }
 
-// The part of it that is there, in the color of the picture: where alpha reaches the cutoff, or the share alpha of each
-// place.
+// The covered part of the surface and its color: pixels with alpha at or above the cutoff, or each pixel by its alpha.
 Coverage cut_out_coverage(const GltfModel& gltf, const tinygltf::Material& material) {
   const double factor = alpha_factor(material);
   const bool is_mask = material.alphaMode == "MASK";
@@ -90,13 +89,13 @@ Coverage cut_out_coverage(const GltfModel& gltf, const tinygltf::Material& mater
   });
 }
 
-// The share of the surface that is there. A mask without a picture makes it all or nothing: it is there.
+// The covered fraction of the surface. A mask without a texture counts as fully covered.
 double covered_share(const GltfModel& gltf, const tinygltf::Material& material) {
   if (is_cut_out(gltf, material)) return cut_out_coverage(gltf, material).share;
   return material.alphaMode == "BLEND" ? alpha_factor(material) : 1;
 }
 
-// KHR_materials_ior, which says that 1.5 holds without it.
+// KHR_materials_ior; default 1.5.
 double index_of(const tinygltf::Material& material) {
   return plausible_index(number_of(material, "KHR_materials_ior", "ior", 1.5), 1.5);
 }
@@ -113,14 +112,14 @@ bool is_clear(const GltfModel& gltf, const tinygltf::Material& material) {
   return transmission(material) > 0 || covered_share(gltf, material) < 1;
 }
 
-// A smooth metal. Both factors are 1 where they are not stated.
+// A smooth metal. Both factors default to 1.
 bool is_mirror(const GltfModel& gltf, const tinygltf::Material& material) {
   const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
   return surface.metallicFactor >= least_metallic && surface.roughnessFactor <= most_roughness &&
          surface.metallicRoughnessTexture.index < 0 && !is_clear(gltf, material);
 }
 
-// glTF 2.0 appendix B.2: a metal reflects its base color, and nothing diffusely.
+// glTF 2.0 appendix B.2: a metal reflects its base color specularly and has no diffuse reflection.
 Material with_metal(Material material, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const Spectrum color = material.reflectance;
@@ -129,9 +128,8 @@ Material with_metal(Material material, const tinygltf::Material& read) {
       "metallicFactor " + rounded(surface.metallicFactor) + " and roughnessFactor " + rounded(surface.roughnessFactor));
 }
 
-// The covered share reflects the part of the base color that it does not transmit, KHR_materials_transmission says, and
-// transmits the other part, but for what the surfaces of glass reflect even if it absorbs nothing.
-// Holes alone have no index of refraction: through them light goes as through air.
+// KHR_materials_transmission: the covered part transmits a fraction of the base color and reflects the rest diffusely.
+// The reflection of the glass surfaces limits the transmittance. Holes alone have index 1.
 Material with_transparency(Material material, const GltfModel& gltf, const tinygltf::Material& read) {
   const double transmitted = transmission(read);
   const bool by_picture = is_cut_out(gltf, read);
@@ -149,7 +147,7 @@ Material with_transparency(Material material, const GltfModel& gltf, const tinyg
   return pane;
 }
 
-// The picture of the base color where it has more than one color.
+// The base color texture, if it has more than one color.
 std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinygltf::Material& read) {
   const tinygltf::PbrMetallicRoughness& surface = read.pbrMetallicRoughness;
   const auto found = gltf.textures.find(image_of(gltf.model, surface.baseColorTexture.index));
@@ -158,9 +156,9 @@ std::optional<TexturedReflectance> textured(const GltfModel& gltf, const tinyglt
                              gltf_wrap(gltf.model, surface.baseColorTexture.index)};
 }
 
-// A material as a diffuse one: reflectance is the base color, radiance in W/(m^2 sr) the emissive factor times the
-// emissive strength. A texture counts by its mean color, if it could be decoded. Those with transmission or, blended,
-// an alpha below 1 are panes, smooth metals mirrors.
+// A diffuse material: the reflectance is the base color, the radiance in W/(m^2 sr) the emissive factor times the
+// emissive strength. Decoded textures contribute their mean color. Materials with transmission, or blended with alpha
+// below 1, become panes; smooth metals become mirrors.
 Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   const int picture = read.pbrMetallicRoughness.baseColorTexture.index;
   const double strength = number_of(read, "KHR_materials_emissive_strength", "emissiveStrength", 1);
@@ -173,7 +171,7 @@ Material material_from(const GltfModel& gltf, const tinygltf::Material& read) {
   return is_clear(gltf, read) ? with_transparency(std::move(material), gltf, read) : material;
 }
 
-// The two textures that count; -1 stands for none.
+// The base color and emissive textures that exist.
 std::vector<int> colored_textures(const tinygltf::Material& material) {
   std::vector<int> textures;
   for (const int texture : {material.pbrMetallicRoughness.baseColorTexture.index, material.emissiveTexture.index}) {
@@ -186,7 +184,7 @@ bool is_matt_metal(const GltfModel& gltf, const tinygltf::Material& material) {
   return material.pbrMetallicRoughness.metallicFactor > 0 && !is_mirror(gltf, material);
 }
 
-// Transparent by a picture of transmission, or by one that could not be read.
+// Transparency by a transmission texture, or by a texture that could not be read.
 bool has_unknown_holes(const GltfModel& gltf, const tinygltf::Material& material) {
   const auto found = material.extensions.find("KHR_materials_transmission");
   if (found != material.extensions.end() && found->second.Has("transmissionTexture")) return true;
@@ -195,7 +193,7 @@ bool has_unknown_holes(const GltfModel& gltf, const tinygltf::Material& material
   return picture >= 0 && !texture_color(gltf, picture);
 }
 
-// Nowhere by a mask, as the factor's alpha alone says; more likely the cutoff is not meant.
+// The alpha factor alone would mask away the whole surface; the cutoff is probably unintended.
 bool is_masked_away(const GltfModel& gltf, const tinygltf::Material& material) {
   const bool is_gone = material.alphaMode == "MASK" && alpha_factor(material) < material.alphaCutoff;
   return is_gone && !is_cut_out(gltf, material) && !has_unknown_holes(gltf, material);
@@ -215,7 +213,7 @@ std::vector<std::string> names_with(const GltfModel& gltf, const GltfProperty& p
   return names;
 }
 
-// With what their pictures cover: "leaves (0.42)".
+// Covered fractions of cut-out materials: "leaves (0.42)".
 std::vector<std::string> covered_shares(const GltfModel& gltf) {
   std::vector<std::string> names;
   for (std::size_t m = 0; m < gltf.model.materials.size(); ++m) {
@@ -226,13 +224,13 @@ std::vector<std::string> covered_shares(const GltfModel& gltf) {
   return names;
 }
 
-// The numbers of materials that are metallic and no mirrors, or transparent by textures or masks.
+// Numbers of rough metals, and of materials with unknown transparency.
 std::vector<UnsimulatedMaterials> unsimulated(const GltfModel& gltf) {
   return counted(names_with(gltf, is_matt_metal).size(),
                  names_with(gltf, has_unknown_holes).size() + names_with(gltf, is_masked_away).size());
 }
 
-// One sentence per property that the materials have and the simulation ignores or simplifies.
+// One sentence per material property that the simulation ignores or simplifies.
 Diagnostics notes_on_materials(const GltfModel& gltf) {
   Diagnostics notes;
   const auto name = [&](DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names) {
@@ -254,7 +252,7 @@ Diagnostics notes_on_materials(const GltfModel& gltf) {
     const bool has_mean = texture_color(of, material.pbrMetallicRoughness.baseColorTexture.index).has_value();
     return (has_mean && !has_place) || texture_color(of, material.emissiveTexture.index).has_value();
   };
-  note(DiagnosticCode::simplified_picture, "textures of lamps, panes and mirrors are replaced by their mean colour",
+  note(DiagnosticCode::simplified_picture, "textures of lamps, panes and mirrors are replaced by their mean color",
        is_used_whole);
   for (const auto& [image, fault] : gltf.picture_faults) {
     const tinygltf::Image& found = gltf.model.images[static_cast<std::size_t>(image)];
@@ -263,18 +261,18 @@ Diagnostics notes_on_materials(const GltfModel& gltf) {
         {DiagnosticCode::unreadable_picture,
          "image " + std::to_string(image) + (uri.empty() ? "" : " (" + uri.substr(0, 80) + ")") + " " + fault});
   }
-  note(DiagnosticCode::unreadable_picture,
-       "textures that could not be read are ignored, the colour factor is used alone", has_texture(false));
-  note(DiagnosticCode::simplified_part, "metallic surfaces are simulated as matt ones of their base colour",
+  note(DiagnosticCode::unreadable_picture, "unreadable textures are ignored; only the color factor is used",
+       has_texture(false));
+  note(DiagnosticCode::simplified_part, "metallic surfaces are simulated as matt surfaces of their base color",
        is_matt_metal);
   name(DiagnosticCode::cut_out_material, covered_note, covered_shares(gltf));
-  note(DiagnosticCode::simplified_part, "transparency by textures is ignored, factors alone count", has_unknown_holes);
-  note(DiagnosticCode::simplified_part, "masks that leave nothing of a surface are ignored: it is opaque",
-       is_masked_away);
+  note(DiagnosticCode::simplified_part, "transparency by textures is ignored; only factors are used",
+       has_unknown_holes);
+  note(DiagnosticCode::simplified_part, "masks that remove a whole surface are ignored: it is opaque", is_masked_away);
   return notes;
 }
 
-// glTF 2.0 section 3.5.3: a node's own transformation, as a matrix by columns or as T R S.
+// glTF 2.0 section 3.5.3: local transformation of a node, as a column-major matrix or T R S.
 Eigen::Matrix4d transformation(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) return Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
@@ -287,7 +285,7 @@ Eigen::Matrix4d transformation(const tinygltf::Node& node) {
   return result.matrix();
 }
 
-// The corners of the triangles of a primitive: glTF 2.0 section 3.7.2.1. Empty for points and lines.
+// Corners of the triangles of a primitive, glTF 2.0 section 3.7.2.1. Empty for points and lines.
 std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::uint32_t>& corners, int mode) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t k = 2; k < corners.size(); ++k) {
@@ -308,13 +306,13 @@ class GltfCollector {
  public:
   GltfCollector(const tinygltf::Model& model, Scene scene)
       : model_(model), scene_(std::move(scene)), mapped_(scene_.file), is_added_(model.nodes.size(), 0) {
-    // The last material is the one of primitives without a material.
+    // The last material is the default of primitives.
     scene_.materials.push_back(default_material());
   }
 
   void add_node(int index, const Eigen::Matrix4d& above) {
     const bool exists = index >= 0 && static_cast<std::size_t>(index) < model_.nodes.size();
-    // Section 3.5.2: no node is below two others. A few that are, below each other, would be added millions of times.
+    // Section 3.5.2: a node has at most one parent. A few nodes that break this rule could be added millions of times.
     if (!exists || is_added_[static_cast<std::size_t>(index)]) {
       throw InputError(scene_.file,
                        "node " + std::to_string(index) +
@@ -368,7 +366,7 @@ class GltfCollector {
     Polygon polygon;
     polygon.material = material_of(primitive);
     polygon.group = static_cast<std::uint32_t>(scene_.groups.size() - 1);
-    // Section 3.7.4: a transformation that mirrors turns the winding round, so that the front stays the front.
+    // Section 3.7.4: a reflection reverses the winding, so that the front stays the front.
     const bool mirrored = to_scene.topLeftCorner<3, 3>().determinant() < 0;
     if (shines_on_both_sides(polygon.material)) polygon.back_material = polygon.material;
     const bool is_textured = scene_.materials[polygon.material].texture.has_value();
@@ -383,7 +381,7 @@ class GltfCollector {
     colored_ += primitive.attributes.count("COLOR_0");
   }
 
-  // glTF 2.0 section 3.9.6: the back of a double-sided material emits as the front does.
+  // glTF 2.0 section 3.9.6: the back of a double-sided material emits like the front.
   bool shines_on_both_sides(MaterialIndex m) const {
     const Material& material = scene_.materials[m];
     const bool is_clear = material.transmittance.size() > 0 && (material.transmittance > 0).any();
@@ -429,7 +427,7 @@ class GltfCollector {
   std::size_t colored_ = 0;
 };
 
-// The nodes at the top of the scene to show; without any scene, all nodes that have no node above.
+// The root nodes of the default scene; without scenes, all nodes without a parent.
 std::vector<int> top_nodes(const tinygltf::Model& model) {
   if (!model.scenes.empty()) {
     const auto chosen = static_cast<std::size_t>(std::max(0, model.defaultScene));
@@ -466,7 +464,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
   for (const tinygltf::Material& read : gltf.model.materials) scene.materials.push_back(material_from(gltf, read));
   if (!gltf.model.animations.empty() || !gltf.model.skins.empty())
     scene.diagnostics.push_back(
-        {DiagnosticCode::simplified_part, "animations and skins are ignored: the model is taken as it stands"});
+        {DiagnosticCode::simplified_part, "animations and skins are ignored: the model keeps its rest pose"});
   scene = with_lost_lights(std::move(scene), gltf.model);
 
   // 2. The triangles, in meters: glTF 2.0 section 3.4 fixes the unit and that +y is up.
@@ -488,7 +486,7 @@ Scene scene_of(const std::filesystem::path& file, double metres_per_unit, const 
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, double metres_per_unit, const std::filesystem::path& confine) {
-  // tinygltf calls itself for each level of the JSON. Pictures, in files of their own, take time and memory to decode.
+  // tinygltf recurses for each level of the JSON. Decoding pictures takes time and memory.
   constexpr ChildLimits limits = {.seconds = 180, .bytes = std::uint64_t{4} << 30U};
   return read_isolated(
       file.string(), [&] { return scene_of(file, metres_per_unit, confine); }, limits);

@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The program's file and that of the shared library with this code, which may be Python's module.
+// The files of the program and of the shared library with this code, e.g. the Python module.
 std::vector<fs::path> own_files() {
   std::error_code error;
   std::vector<fs::path> files = {fs::read_symlink("/proc/self/exe", error)};
@@ -53,9 +53,8 @@ std::vector<fs::path> data_folders() {
   return folders;
 }
 
-// The file `name` ("ifc/read_ifc.mjs") of those that patchlight installs into share/patchlight. It stands beside the
-// program or the library in one of the folders above it, in the build tree too, else in XDG_DATA_DIRS. Empty when
-// there is none.
+// Finds `name` ("ifc/read_ifc.mjs") among the files that patchlight installs into share/patchlight. Searches the
+// folders above the program or library, including the build tree, then XDG_DATA_DIRS. Empty if not found.
 fs::path shared_file(const fs::path& name) {
   std::vector<fs::path> folders;
   for (const fs::path& file : own_files()) {
@@ -103,7 +102,7 @@ Material ifc_material(const IfcJson& line) {
                  "opacity " + rounded(1 - transparency));
 }
 
-// "A102 Living room": numbers alone say little, and names come more than once.
+// "A102 Living room": numbers alone are unclear, and names repeat.
 std::string room_name(const std::string& name, const std::string& long_name) {
   if (name.empty() || long_name.empty() || name == long_name) return name.empty() ? long_name : name;
   return name + " " + long_name;
@@ -125,7 +124,7 @@ class IfcScene {
         scene_.materials.push_back(ifc_material(line));
       }
     }
-    // Points come in meters by the unit that the file states.
+    // Points come in meters, converted by the unit of the file.
     if (line.contains("unit") && metres_per_unit_) scale_ = *metres_per_unit_ / line.at("unit").get<double>();
     if (line.contains("north") && !line.at("north").is_null()) set_north(line.at("north").get<std::array<double, 2>>());
     if (line.contains("space")) add_space(line);
@@ -167,7 +166,7 @@ class IfcScene {
     }
   }
 
-  // A space is air: its body gives the place of a room. A space may have several lines.
+  // A space has no faces: its body gives the extent of a room. A space may have several lines.
   void add_space(const IfcJson& line) {
     const auto [room, is_new] = rooms_.emplace(line.at("id").get<std::uint64_t>(), scene_.rooms.size());
     if (is_new) {
@@ -189,10 +188,10 @@ class IfcScene {
   bool is_complete_ = false;
 };
 
-// The scene of the lines that ifc/read_ifc.mjs writes, of which that script has the list. Groups are elements, by
-// class, name and identifier. A transparency makes a pane. Spaces become rooms. True north is that of the file.
-// `metres_per_unit` replaces the unit that the file states. Throws InputError naming `file` when the script refuses
-// it, or the lines are damaged.
+// Builds the scene from the lines that ifc/read_ifc.mjs writes; the script documents them. Groups are elements, named
+// by class, name and identifier. A transparency makes a pane. Spaces become rooms. True north comes from the file.
+// `metres_per_unit` replaces the unit of the file. Throws InputError naming `file` when the script refuses it, or lines
+// are damaged.
 Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::optional<double> metres_per_unit) {
   IfcScene read(file, metres_per_unit);
   try {
@@ -210,7 +209,7 @@ Scene scene_of_ifc_stream(std::string_view lines, const std::string& file, std::
   }
 }
 
-// The file of a program that PATH finds; empty when there is none.
+// The file of a program in PATH; empty if not found.
 fs::path program_file(const std::string& name) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
@@ -222,7 +221,7 @@ fs::path program_file(const std::string& name) {
   return {};
 }
 
-// Node.js with the script that reads IFC by web-ifc, a package beside the script.
+// Node.js with the script that reads IFC with web-ifc, a package beside the script.
 Program ifc_reader(const std::string& file) {
   const fs::path node = program_file("node");
   if (node.empty()) {

@@ -5,7 +5,7 @@
 //   {"space": "A102", "long_name": "Living room", "id": 17, "storey": "Level 1", "points": ..., "triangles": ...}
 //   {"without_faces": "IfcWall_East_1xS3..."}                            an element whose shape gave no faces
 //   {"end": true}
-// or {"refusal": "..."} alone. Points are in metres, z up. web-ifc cuts the openings.
+// or {"refusal": "..."} alone. Points are in meters, z up. web-ifc cuts the openings.
 import { readFileSync, writeSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
@@ -24,7 +24,7 @@ const value = (attribute) => (attribute && attribute.value !== undefined ? attri
 const text = (attribute) => String(value(attribute) ?? '').trim();
 const references = (attribute) => [attribute ?? []].flat().filter((one) => one && one.type === 5).map((one) => one.value);
 
-// The lines of a model, each read once; nothing where a reference leads nowhere.
+// The lines of a model, each read once; null for a dangling reference.
 class Lines {
   constructor(ifc, model) {
     this.ifc = ifc;
@@ -54,7 +54,7 @@ class Lines {
   }
 }
 
-// The names of styles by the items, the materials and the elements that have them.
+// Names of styles by item, material and element.
 class Styles {
   constructor(web, lines) {
     this.web = web;
@@ -77,7 +77,7 @@ class Styles {
     for (const material of references(definition.RepresentedMaterial)) this.ofMaterial.set(material, styles);
   }
 
-  // The surface styles of a styled item, in IFC2x3 behind an assignment.
+  // The surface styles of a styled item; IFC2x3 has an assignment in between.
   surfaceStyles(styled) {
     const found = [];
     for (const id of references(styled?.Styles)) {
@@ -100,7 +100,7 @@ class Styles {
     return { name: text(style.Name), colors };
   }
 
-  // The styles that an element's material, its layers and constituents have.
+  // The styles of an element's material, its layers and constituents.
   ofMaterials(id, depth = 0) {
     const line = this.lines.get(id);
     if (!line || depth > 8) return [];
@@ -110,7 +110,7 @@ class Styles {
     return [...(this.ofMaterial.get(id) ?? []), ...below.flatMap((part) => this.ofMaterials(part, depth + 1))];
   }
 
-  // The styles of an item and of the items it is made of, outermost first.
+  // The styles of an item and of its parts, outermost first.
   ofShape(id, depth = 0) {
     const line = this.lines.get(id);
     if (!line || depth > 16) return [];
@@ -120,7 +120,7 @@ class Styles {
     return [...(this.ofItem.get(id) ?? []), ...below.flatMap((part) => this.ofShape(part, depth + 1))];
   }
 
-  // The style of a colour that web-ifc found; nothing for the white of faces without a style.
+  // The style of a color from web-ifc; null for white, the color of faces without a style.
   of(element, item, color) {
     const line = this.lines.get(element);
     const styles = [...(this.ofItem.get(item) ?? []),
@@ -144,7 +144,7 @@ class Styles {
   }
 }
 
-// The numbers of materials; each is written when it comes first.
+// The numbers of materials; each material is written at its first use.
 class Materials {
   constructor() {
     this.numbers = new Map();
@@ -163,7 +163,7 @@ class Materials {
   }
 }
 
-// The points, each once, and triangles of a placed geometry. web-ifc turns the axes to y up.
+// Points without duplicates, and triangles of a placed geometry. web-ifc uses y as the vertical axis.
 function faces(ifc, model, placed) {
   const geometry = ifc.GetGeometry(model, placed.geometryExpressID);
   const vertices = ifc.GetVertexArray(geometry.GetVertexData(), geometry.GetVertexDataSize());
@@ -192,7 +192,7 @@ function faces(ifc, model, placed) {
   return { points, triangles };
 }
 
-// The storeys of elements and spaces, by way of whatever they are parts of.
+// The stories of elements and spaces, through all levels of decomposition.
 function storeys(web, lines) {
   const above = new Map();
   for (const relation of lines.all(web.IFCRELCONTAINEDINSPATIALSTRUCTURE)) {
@@ -220,7 +220,7 @@ function trueNorth(web, lines) {
   return null;
 }
 
-// Metres per unit of length, as far as the project's units say it.
+// Meters per unit of length, if the project states it.
 function lengthUnit(web, lines) {
   const prefixes = { KILO: 1e3, HECTO: 1e2, DECA: 10, DECI: 0.1, CENTI: 0.01, MILLI: 1e-3, MICRO: 1e-6 };
   const factor = (unit, depth = 0) => {
@@ -237,7 +237,7 @@ function lengthUnit(web, lines) {
   return 1;
 }
 
-// Spaces are air, and zones are groups of spaces; openings and voids are cut already.
+// Spaces are air, and zones are groups of spaces; openings and voids are already cut.
 const noBodies = ['IFCSPACE', 'IFCSPATIALZONE', 'IFCEXTERNALSPATIALELEMENT', 'IFCOPENINGELEMENT',
                   'IFCOPENINGSTANDARDCASE', 'IFCVOIDINGFEATURE', 'IFCVIRTUALELEMENT', 'IFCANNOTATION', 'IFCGRID'];
 
@@ -307,9 +307,9 @@ async function main() {
   write({ end: true });
 }
 
-// web-ifc and the module loader write to the console, which is for our lines alone.
+// web-ifc and the module loader write to the console, which must contain only the lines of this script.
 for (const level of ['log', 'info', 'warn', 'error', 'debug']) console[level] = () => {};
 main().catch((error) => {
-  // What WebAssembly throws has no message.
+  // Exceptions of WebAssembly have no message.
   write({ refusal: `cannot be read: ${error?.message ?? 'the IFC library ends with an error, or needs more than its memory'}` });
 });

@@ -34,7 +34,7 @@ std::vector<Statement> statements_of(const std::vector<TextLine>& lines) {
   return statements;
 }
 
-// The k-th word as a whole number below `limit`.
+// The k-th word, a whole number below `limit`.
 std::uint32_t whole_number(const Statement& statement, std::size_t k, std::uint32_t limit, const std::string& file) {
   const std::string_view word = k < statement.words.size() ? statement.words[k] : std::string_view();
   const auto value = whole_number_in<std::uint32_t>(word);
@@ -46,7 +46,7 @@ std::uint32_t whole_number(const Statement& statement, std::size_t k, std::uint3
   return *value;
 }
 
-// Three numbers among the words, the first at `begin`.
+// Three numbers among the words, starting at `begin`.
 Point vertex_of(const std::vector<std::string_view>& words, std::size_t begin, const std::string& where,
                 const std::string& expected) {
   Point point;
@@ -72,7 +72,7 @@ Polygon face(const Statement& statement, std::size_t vertices, const std::string
   return polygon;
 }
 
-// The statements without the key word, and the numbers of vertices and faces taken off the first of the rest.
+// The statements, without the keyword and the counts of vertices and faces.
 struct OffHeader {
   std::uint32_t vertices = 0;
   std::uint32_t faces = 0;
@@ -111,7 +111,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;
   bool is_list = false;
-  PlyType count_type = PlyType::uint8;  // of a list's length
+  PlyType count_type = PlyType::uint8;  // type of a list's length
 };
 
 struct PlyElement {
@@ -124,7 +124,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  // where the values begin
+  std::size_t bytes = 0;  // offset of the values
   std::uint32_t lines = 0;
 };
 
@@ -169,7 +169,7 @@ PlyProperty property_of(const std::vector<std::string_view>& statement, const st
   return property;
 }
 
-// The line that begins at `begin`, without its end; `begin` moves behind it.
+// The line that starts at `begin`, without its end; advances `begin`.
 std::string_view line_at(std::string_view bytes, std::size_t& begin) {
   const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
   std::string_view line = bytes.substr(begin, end - begin);
@@ -237,7 +237,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& file) {
   throw InputError(file, "ends within its header; expected end_header");
 }
 
-// Hands out the values of a PLY file one after the other.
+// Reads the values of a PLY file in sequence.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const PlyHeader& header, std::string file)
@@ -246,10 +246,10 @@ class PlyBody {
         line_(header.lines + 1),
         file_(std::move(file)) {}
 
-  // The next number, of this type. \throws InputError when there is none.
+  // The next number of this type. \throws InputError at the end.
   double next(PlyType type) { return encoding_ == PlyEncoding::ascii ? next_word() : next_bytes(type); }
 
-  // All numbers of the next property: one, or a list. \throws InputError when they are missing.
+  // All numbers of the next property, a scalar or a list. \throws InputError if numbers are missing.
   std::vector<double> next(const PlyProperty& property) {
     if (!property.is_list) return {next(property.type)};
     const double count = next(property.count_type);
@@ -258,7 +258,7 @@ class PlyBody {
     return values;
   }
 
-  // The line in an ASCII file; 0 otherwise.
+  // The current line of an ASCII file; 0 for binary files.
   std::uint32_t line() const { return encoding_ == PlyEncoding::ascii ? line_ : 0; }
 
  private:
@@ -293,7 +293,7 @@ class PlyBody {
   std::string file_;
 };
 
-// Where a property stands in its element; nothing when there is none of these names.
+// Index of a property in its element; empty if it has none of these names.
 std::optional<std::size_t> find(const PlyElement& element, std::initializer_list<std::string_view> names) {
   for (std::size_t k = 0; k < element.properties.size(); ++k) {
     if (std::find(names.begin(), names.end(), element.properties[k].name) != names.end()) return k;
@@ -322,7 +322,7 @@ Scene with_vertices(Scene scene, const PlyElement& element, PlyBody& body) {
   return scene;
 }
 
-// Of a line, or of the file where its values are binary.
+// Throws an error that names the line, or only the file if it is binary.
 [[noreturn]] void refuse_corner(const std::string& file, std::uint32_t line) {
   throw InputError(line > 0 ? at_line(file, line) : file,
                    "a face has a corner that names no vertex\nhint: export the model again");
@@ -362,7 +362,7 @@ Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
   for (std::uint64_t k = 0; k < element.count; ++k) {
     for (const PlyProperty& property : element.properties) body.next(property);
   }
-  // Lists are of vertices, e.g. strips of triangles.
+  // Lists contain vertices, e.g. triangle strips.
   const bool has_faces = std::any_of(element.properties.begin(), element.properties.end(),
                                      [](const PlyProperty& property) { return property.is_list; });
   LeftOut left_out;
@@ -374,7 +374,7 @@ Scene without(Scene scene, const PlyElement& element, PlyBody& body) {
 }
 
 // A binary file: 80 bytes of comment, the number of triangles, and for each its normal, three corners (all floats) and
-// two bytes more. Numbers are little-endian, as on the machines this runs on.
+// two more bytes. Numbers are little-endian, like the supported machines.
 constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 
@@ -384,7 +384,7 @@ std::size_t triangles_promised(std::string_view bytes) {
   return count;
 }
 
-// Binary files may begin with "solid" too; their length decides. Some writers use capitals.
+// Some binary files begin with "solid" too; the length decides. Some writers use capitals.
 bool is_binary(std::string_view bytes) {
   if (bytes.size() < header_bytes) return false;
   return bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes) ||
@@ -418,7 +418,7 @@ Scene with_binary(Scene scene, std::string_view bytes) {
 }
 
 Scene with_ascii(Scene scene, const std::string& text) {
-  std::size_t first = 0;    // vertex of the loop at hand
+  std::size_t first = 0;    // first vertex of the current loop
   std::uint32_t begin = 0;  // its line
   bool is_whole = true;
   LeftOut left_out;

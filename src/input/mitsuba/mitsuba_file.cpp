@@ -29,7 +29,7 @@ std::string plain_name(const char* name) {
   return result;
 }
 
-// From a frame that looks along +z, with y up, to the world; its x axis points to the left.
+// The transformation from a frame that looks along +z, with y up and x to the left, to the world.
 std::optional<Eigen::Matrix4d> look_at(const Vector& origin, const Vector& target, const Vector& up) {
   const Vector forward = (target - origin).stableNormalized();
   const Vector left = up.cross(forward).stableNormalized();
@@ -66,7 +66,7 @@ Vector rgb_weights(double wavelength) {
   return to_rgb * xyz_at(wavelength);
 }
 
-// The value of sampled wavelengths at one.
+// Interpolates sampled wavelengths.
 double sample_at(std::span<const std::pair<double, double>> samples, double wavelength) {
   const auto above = std::lower_bound(samples.begin(), samples.end(), wavelength,
                                       [](const auto& sample, double place) { return sample.first < place; });
@@ -98,12 +98,12 @@ Spectrum linear_rgb_of(const Spectrum& values) {
 // "#ff8000"
 Spectrum of_hexadecimal(const MitsubaFile& file, const pugi::xml_node& node, const std::string& value) {
   if (value.size() != 7 || value.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-    refuse(file, node, "a colour as #ff8000");
+    refuse(file, node, "a color, e.g. #ff8000");
   const auto part = [&](std::size_t at) { return std::stoi(value.substr(at, 2), nullptr, 16) / 255.0; };
   return linear_rgb_of(rgb(part(1), part(3), part(5)));
 }
 
-// "400:0.1, 700:0.9"
+// Reads "400:0.1, 700:0.9".
 Spectrum of_pairs(const MitsubaFile& file, const pugi::xml_node& node, std::string value) {
   std::replace(value.begin(), value.end(), ',', ' ');
   std::vector<std::pair<double, double>> samples;
@@ -112,7 +112,7 @@ Spectrum of_pairs(const MitsubaFile& file, const pugi::xml_node& node, std::stri
     const auto wavelength = finite_number(word.substr(0, colon));
     const auto sample = colon == std::string_view::npos ? std::nullopt : finite_number(word.substr(colon + 1));
     if (!wavelength || !sample || (!samples.empty() && *wavelength <= samples.back().first))
-      refuse(file, node, "a spectrum as 400:0.1, 700:0.9, by growing wavelengths,");
+      refuse(file, node, "a spectrum with increasing wavelengths, e.g. 400:0.1, 700:0.9,");
     samples.emplace_back(*wavelength, *sample);
   }
   return rgb_of_wavelengths(samples);
@@ -127,10 +127,10 @@ MitsubaColour of_black_body(const MitsubaFile& file, const pugi::xml_node& node)
   std::vector<std::pair<double, double>> samples;
   for (double wavelength = shortest_wavelength; wavelength <= longest_wavelength; wavelength += 5)
     samples.emplace_back(wavelength, (scale.empty() ? 1 : scale[0]) * planck(wavelength, *kelvin));
-  return {rgb_of_wavelengths(samples).max(0), "a black body counts by its radiance per nm"};
+  return {rgb_of_wavelengths(samples).max(0), "a black body uses its radiance per nm"};
 }
 
-// A color of a checkerboard, which is no texture itself.
+// A checkerboard color; nested textures are not allowed.
 Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const std::string& name, double otherwise) {
   const pugi::xml_node field = file.property(node, name);
   const bool is_texture = std::string_view(field.name()) == "texture";
@@ -141,10 +141,10 @@ Spectrum field_colour(const MitsubaFile& file, const pugi::xml_node& node, const
 MitsubaColour of_texture(const MitsubaFile& file, const pugi::xml_node& node) {
   const std::string kind = file.text(node, "type");
   if (const std::optional<Spectrum> mean = kind == "bitmap" ? file.picture(node) : std::nullopt)
-    return {*mean, "pictures count by their mean colour"};
-  if (kind != "checkerboard") return {rgb(0.5, 0.5, 0.5), "textures that cannot be read count as 0.5"};
+    return {*mean, "pictures are replaced by their mean color"};
+  if (kind != "checkerboard") return {rgb(0.5, 0.5, 0.5), "unreadable textures are replaced by 0.5"};
   return {(field_colour(file, node, "color0", 0.4) + field_colour(file, node, "color1", 0.2)) / 2,
-          "checkerboards count by their mean"};
+          "checkerboards are replaced by their mean"};
 }
 
 }  // namespace
@@ -232,7 +232,7 @@ std::uint32_t MitsubaFile::line(const pugi::xml_node& node) const {
   return line_of(file, node);
 }
 
-// The longest name that is known counts: $spp2 is not $spp and a 2.
+// The longest known name matches: $spp2 is not $spp followed by 2.
 std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute) const {
   const std::string_view said = node.attribute(attribute).value();
   std::string result;
@@ -247,10 +247,11 @@ std::string MitsubaFile::text(const pugi::xml_node& node, const char* attribute)
       if (is_it && (best == nullptr || known.first.size() > best->first.size())) best = &known;
     }
     if (best == nullptr)
-      throw InputError(place(node),
-                       "'" + std::string(said) +
-                           "' names what no <default> before it says\nhint: add one, e.g. <default name=\"size\" "
-                           "value=\"1\"/>");
+      throw InputError(
+          place(node),
+          "'" + std::string(said) +
+              "' names a variable without a <default> before it\nhint: add one, e.g. <default name=\"size\" "
+              "value=\"1\"/>");
     result += best->second;
     at += best->first.size();
     if (result.size() > reading_limits::text_length)
@@ -307,7 +308,7 @@ bool MitsubaFile::flag(const pugi::xml_node& node, const std::string& name) cons
   return word(node, name, "false") == "true";
 }
 
-// value="1, 2, 3", value="2" for all, or x, y and z one by one.
+// Reads value="1, 2, 3", value="2" for all axes, or x, y and z separately.
 Vector MitsubaFile::axes(const pugi::xml_node& node, double otherwise) const {
   Vector result = Vector::Constant(otherwise);
   if (node.attribute("value")) {
@@ -401,7 +402,7 @@ std::optional<MitsubaColour> mitsuba_colour(const MitsubaFile& file, const pugi:
   const std::string value = file.text(node, "value");
   if (!value.empty() && value[0] == '#') return MitsubaColour{of_hexadecimal(file, node, value), ""};
   if (value.find(':') != std::string::npos)
-    return MitsubaColour{of_pairs(file, node, value).max(0), "spectra count by their RGB"};
+    return MitsubaColour{of_pairs(file, node, value).max(0), "spectra are replaced by their RGB"};
   const std::vector<double> numbers = file.numbers(node, "value");
   if (numbers.size() != 1 && numbers.size() != 3) refuse(file, node, "one number, or red, green and blue,");
   const Spectrum colour =

@@ -28,19 +28,19 @@
 namespace patchlight {
 namespace {
 
-// Meshes of files, each read once.
+// Meshes from files, each read once.
 struct MitsubaMeshes {
-  std::filesystem::path confine;  // the folder in which they must lie; empty for any
+  std::filesystem::path confine;  // the folder that must contain them; empty: no restriction
   std::map<std::string, std::optional<FacetedShape>> by_file;
-  std::vector<std::filesystem::path> files;  // that were read
-  std::vector<std::string> digests;          // of the same
-  Diagnostics losses;                        // parts that are left out
+  std::vector<std::filesystem::path> files;  // files that were read
+  std::vector<std::string> digests;          // their digests
+  Diagnostics losses;                        // parts that were left out
 };
 
-// The kinds of shapes that can be read.
+// The supported kinds of shapes.
 constexpr std::array kinds_of_shapes = {"obj", "ply", "rectangle", "cube", "sphere", "disk", "cylinder"};
 
-// From -1 to 1 in x and y; its front looks along +z.
+// From -1 to 1 in x and y; the front faces +z.
 FacetedShape rectangle() { return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2, 3}}}; }
 
 // From -1 to 1, fronts outward.
@@ -85,8 +85,8 @@ FacetedShape cylinder_of(const MitsubaFile& file, const pugi::xml_node& shape) {
                       file.number(shape, "radius", 1), file.number(shape, "radius", 1));
 }
 
-// The faces of a shape before its transformation. Nothing when the file of a mesh is not there. Throws InputError
-// naming the line, or the mesh's file.
+// The faces of a shape before its transformation. Empty if the file of a mesh is missing. Throws InputError naming the
+// line, or the mesh's file.
 std::optional<FacetedShape> mitsuba_shape(const MitsubaFile& file, const pugi::xml_node& shape, MitsubaMeshes& meshes) {
   const std::string kind = file.text(shape, "type");
   if (kind == "obj" || kind == "ply") return mesh_of(file, shape, kind, meshes);
@@ -105,17 +105,17 @@ std::optional<FacetedShape> mitsuba_shape(const MitsubaFile& file, const pugi::x
   return std::nullopt;
 }
 
-// The material that stands for a BSDF of Mitsuba.
+// The material of a Mitsuba BSDF.
 struct MitsubaMaterial {
   Material material;
-  bool is_nothing = false;              // light passes as if the surface were not there
-  std::vector<std::string> simplified;  // what is not carried, for notes
+  bool is_nothing = false;              // light passes unchanged
+  std::vector<std::string> simplified;  // simplifications, for notes
 };
 
-// BSDFs around another one that change no diffuse light.
+// BSDFs that wrap another one without changing diffuse light.
 constexpr std::array wrappers = {"twosided", "bumpmap", "bump",         "normalmap", "mask",
                                  "opacity",  "coating", "roughcoating", "blendbsdf", "mixturebsdf"};
-// The properties that may say what a surface reflects, the first one counts.
+// Properties that may define the reflectance; the first one found is used.
 constexpr std::array color_names = {"reflectance", "diffusereflectance", "basecolor", "specularreflectance"};
 constexpr std::array glass_kinds = {"dielectric", "thindielectric", "roughdielectric"};
 constexpr std::array conductors = {"conductor", "roughconductor"};
@@ -125,7 +125,7 @@ bool is_one_of(const std::array<const char*, N>& kinds, const std::string& kind)
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-// Index of refraction, a number or the name of what has it.
+// Index of refraction, a number or the name of a medium.
 double index_in(const MitsubaFile& file, const pugi::xml_node& bsdf, const std::string& name, double otherwise) {
   static const std::map<std::string, double> known = {
       {"vacuum", 1},     {"air", 1.000277}, {"ice", 1.31},           {"water", 1.333},        {"bk7", 1.5046},
@@ -141,14 +141,14 @@ double index_in(const MitsubaFile& file, const pugi::xml_node& bsdf, const std::
                    "found '" + stated + "' where an index of refraction is expected, e.g. 1.5 or bk7");
 }
 
-// Fresnel's equations square to a conductor: ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2).
+// Normal incidence on a conductor, Fresnel: ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2).
 Spectrum fresnel(const Spectrum& eta, const Spectrum& k) {
   return ((eta - 1).square() + k.square()) / ((eta + 1).square() + k.square());
 }
 
-// Reads the material of a BSDF: diffuse ones and the diffuse part of others as they are, dielectrics as panes, smooth
-// conductors as mirrors, other glossy surfaces matt. Nested ones count through their wrappers. An empty node stands for
-// a surface without a BSDF. Throws InputError naming the line.
+// Reads the material of a BSDF. Diffuse BSDFs and diffuse parts are kept. Dielectrics become panes, smooth conductors
+// mirrors, and other glossy surfaces matt. Wrappers are skipped. An empty node is a surface without a BSDF. Throws
+// InputError naming the line.
 class MaterialReader {
  public:
   MaterialReader(const MitsubaFile& file, const std::string& name) : file_(file) {
@@ -171,7 +171,7 @@ class MaterialReader {
     } else if (is_one_of(wrappers, kind)) {
       if (static_cast<std::size_t>(depth) == reading_limits::nesting)
         throw InputError(file_.place(bsdf), "BSDFs are nested more than 64 deep");
-      if (kind != "twosided") simplify(kind + " is left out, what it is put around counts");
+      if (kind != "twosided") simplify(kind + " is ignored; the BSDF inside it is used");
       add(file_.nested(bsdf, "bsdf"), depth + 1);
     } else if (is_one_of(glass_kinds, kind)) {
       add_glass(bsdf, kind);
@@ -201,11 +201,11 @@ class MaterialReader {
       if (!found) found = colour(bsdf, name);
     }
     const bool is_matt = kind == "diffuse" || kind == "lambertian";
-    if (!is_matt) simplify(kind + (found ? " becomes matt" : " has no reflectance that is known, 0.5 is taken"));
+    if (!is_matt) simplify(kind + (found ? " becomes matt" : " has no known reflectance; 0.5 is used"));
     read_.material.reflectance = found.value_or(rgb(0.5, 0.5, 0.5)).min(1).max(0);
   }
 
-  // A pane of that index which absorbs nothing, or colors the light.
+  // A pane of that index without absorption, or with a color.
   void add_glass(const pugi::xml_node& bsdf, const std::string& kind) {
     const double inside = index_in(file_, bsdf, "intior", 1.5046);
     const double outside = index_in(file_, bsdf, "extior", 1.000277);
@@ -216,7 +216,7 @@ class MaterialReader {
     read_.material = as_pane(std::move(read_.material), share, index, kind);
   }
 
-  // Reflectance square to the surface; by name where there are no optical constants.
+  // Reflectance at normal incidence; by name if there are no optical constants.
   Spectrum metal_reflectance(const pugi::xml_node& bsdf) {
     static const std::map<std::string, Spectrum> known = {{"none", rgb(1, 1, 1)},        {"Ag", rgb(0.97, 0.96, 0.92)},
                                                           {"Al", rgb(0.91, 0.92, 0.92)}, {"Au", rgb(1, 0.77, 0.34)},
@@ -258,7 +258,7 @@ Vector turned(const Eigen::Matrix4d& matrix, const Vector& direction) {
 
 Point placed_at(const Eigen::Matrix4d& matrix, const Point& point) { return (matrix * point.homogeneous()).head<3>(); }
 
-// Named by its id, else `otherwise`.
+// Named by the id, else `otherwise`.
 Luminaire luminaire_of(const MitsubaFile& file, const pugi::xml_node& emitter, const char* otherwise) {
   Luminaire luminaire;
   const std::string id = file.text(emitter, "id");
@@ -276,8 +276,8 @@ Scene with_point(Scene scene, const MitsubaFile& file, const pugi::xml_node& emi
   return scene;
 }
 
-// The intensity on the axis holds up to the beam width and falls linearly to 0 at the cutoff angle. The profile of a
-// spot has the same half width; its field makes the flux the same within 7 %.
+// The intensity equals that on the axis up to the beam width and falls linearly to 0 at the cutoff angle. The spot
+// profile here has the same half width. Its field angle gives the same flux within 7 %.
 Scene with_spot(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
   const double cutoff = file.number(emitter, "cutoffangle", 20);
   const double beam = file.number(emitter, "beamwidth", 0.75 * cutoff);
@@ -291,7 +291,7 @@ Scene with_spot(Scene scene, const MitsubaFile& file, const pugi::xml_node& emit
   luminaire.aim = turned(matrix, Vector::UnitZ());
   if (!(luminaire.aim.norm() > 0.5)) throw InputError(file.place(emitter), "the spot emitter has no direction");
   luminaire.zero_plane = luminaire.aim.unitOrthogonal();
-  // A linear fall is at one half in the middle and at one tenth nine tenths of the way.
+  // A linear fall reaches one half in the middle, and one tenth at 90 % of the range.
   luminaire.light = SpotLight{strength(file, emitter, "intensity") * std::pow(scene.metres_per_unit, 2),
                               beam + 0.5 * (cutoff - beam), beam + 0.9 * (cutoff - beam)};
   scene.luminaires.push_back(std::move(luminaire));
@@ -306,8 +306,8 @@ Scene with_directional(Scene scene, const MitsubaFile& file, const pugi::xml_nod
   return scene;
 }
 
-// The scene with an emitter that is no surface: constant light from all around is an even sky and ground, a point
-// light a luminaire, a directional one the sun. Notes name others, and what to do for a sky. Throws InputError naming
+// Adds an emitter that is not a surface: a constant environment becomes a uniform sky and ground, a point light a
+// luminaire, a directional light the sun. Notes list other emitters, with advice for skies. Throws InputError naming
 // the line.
 Scene with_mitsuba_emitter(Scene scene, const MitsubaFile& file, const pugi::xml_node& emitter) {
   const std::string kind = file.text(emitter, "type");
@@ -327,7 +327,7 @@ Scene with_mitsuba_emitter(Scene scene, const MitsubaFile& file, const pugi::xml
   return scene;
 }
 
-// The scene with the view of a perspective sensor, if it is one.
+// Adds the view of a perspective sensor.
 Scene with_mitsuba_sensor(Scene scene, const MitsubaFile& file, const pugi::xml_node& sensor) {
   if (file.text(sensor, "type") != "perspective" && file.text(sensor, "type") != "thinlens") return scene;
   const Eigen::Matrix4d matrix = file.to_world(sensor);
@@ -336,7 +336,7 @@ Scene with_mitsuba_sensor(Scene scene, const MitsubaFile& file, const pugi::xml_
   const pugi::xml_node film = file.nested(sensor, "film");
   const double aspect = file.number(film, "height", 576) / file.number(film, "width", 768);
   const double stated = std::tan(file.number(sensor, "fov", 50) * std::numbers::pi / 360);
-  // The angle is that across, unless it is said to be another one.
+  // The angle is horizontal unless fovAxis differs.
   const std::string axis = file.word(sensor, "fovaxis", "x");
   const bool is_vertical = axis == "y" || (axis == "smaller" && aspect < 1) || (axis == "larger" && aspect > 1);
   const double angle = 360 / std::numbers::pi * std::atan(is_vertical ? stated : stated * aspect);
@@ -346,7 +346,7 @@ Scene with_mitsuba_sensor(Scene scene, const MitsubaFile& file, const pugi::xml_
   return scene;
 }
 
-// The radiance that the area emitter of a shape has; black without one. Throws InputError naming the line.
+// The radiance of a shape's area emitter; black without one. Throws InputError naming the line.
 Spectrum emitted_radiance(const MitsubaFile& file, const pugi::xml_node& shape) {
   pugi::xml_node emitter = file.nested(shape, "emitter");
   if (!emitter) emitter = file.nested(shape, "luminaire");
@@ -402,7 +402,7 @@ class MitsubaReader {
   void add_shape(const pugi::xml_node& shape, const Eigen::Matrix4d& above, int depth) {
     const std::string kind = file_.text(shape, "type");
     const std::string name = name_of(shape);
-    if (kind == "shapegroup") return;  // stands where instances say
+    if (kind == "shapegroup") return;  // placed by instances
     if (kind == "instance") return add_instance(shape, above, depth);
     if (!is_one_of(kinds_of_shapes, kind))
       return left_out_.lose("shapes that cannot be read are left out, of the kind " + kind, name);
@@ -431,14 +431,14 @@ class MitsubaReader {
                  MaterialIndex material, std::uint32_t group) {
     if (scene_.polygons.size() + faces.faces.size() > reading_limits::polygons)
       throw InputError(file_.place(shape), "there are more than 10,000,000 faces, counting instances; expected fewer");
-    // A mirrored copy keeps its front.
+    // A reflected copy keeps its front.
     const bool is_turned = file_.flag(shape, "flipnormals") != (to_scene.topLeftCorner<3, 3>().determinant() < 0);
     const auto placed = [&](const Point& point) { return placed_at(to_scene, point); };
     Polygon polygon{.corners = {}, .material = material, .group = group, .line = file_.line(shape)};
     scene_ = with_shape(std::move(scene_), faces, placed, is_turned, std::move(polygon));
   }
 
-  // Nothing for surfaces that light passes as if they were not there.
+  // Empty for surfaces that light passes unchanged.
   std::optional<MaterialIndex> material_of(const pugi::xml_node& shape, const std::string& name) {
     const pugi::xml_node bsdf = file_.nested(shape, "bsdf");
     const Spectrum radiance = emitted_radiance(file_, shape);
@@ -449,7 +449,7 @@ class MitsubaReader {
     if (!is_new) return found->second;
     MitsubaMaterial read = MaterialReader(file_, id.empty() ? name : id).of(bsdf, 0);
     const bool emits = (radiance > 0).any();
-    // A lamp without a BSDF, or whose surface is not there for other light, reflects nothing.
+    // A lamp without a BSDF, or with a null BSDF, reflects nothing.
     if (emits && (!bsdf || read.is_nothing)) {
       read.material.reflectance = rgb(0, 0, 0);
       read.simplified.clear();
@@ -463,7 +463,7 @@ class MitsubaReader {
     return found->second;
   }
 
-  // Its own, or that of what it is put around.
+  // The id of the BSDF, or of the one that it wraps.
   std::string id_of(const pugi::xml_node& bsdf) const {
     const std::string id = file_.text(bsdf, "id");
     return id.empty() && bsdf.child("bsdf") ? file_.text(bsdf.child("bsdf"), "id") : id;

@@ -18,8 +18,7 @@
 namespace patchlight {
 namespace {
 
-// The largest vertex number a face uses, to be compared with the number of vertices when the file has been read: a face
-// may stand above its vertices.
+// The largest vertex number in a face, checked after the whole file is read: faces may precede their vertices.
 struct HighestVertex {
   std::int64_t number = 0;
   std::uint32_t line = 0;
@@ -37,21 +36,21 @@ Point obj_vertex(const std::vector<std::string_view>& statement, const std::stri
     const std::optional<double> value = finite_number(statement[axis + 1]);
     if (!value) {
       throw InputError(where, "the coordinate " + quoted(statement[axis + 1]) +
-                                  " is not a finite number; expected three numbers such as 1.25 after v");
+                                  " is not a finite number; expected three numbers after v, e.g. 1.25");
     }
     point[axis] = *value;
   }
   return point;
 }
 
-// The vertex number of a corner such as 7, 7/2, 7//3 or -1/2/3, from 1. A negative number counts back from the last
-// vertex above.
+// The vertex number, from 1, of a corner, e.g. 7, 7/2, 7//3 or -1/2/3. A negative number counts back from the last
+// vertex before it.
 std::int64_t vertex_number(std::string_view corner, std::size_t vertices_above, const std::string& where) {
   const std::string_view digits = corner.substr(0, corner.find('/'));
   const std::int64_t number = whole_number_in<std::int64_t>(digits).value_or(0);
   if (number == 0) {
     throw InputError(where, "the corner " + quoted(corner) +
-                                " names no vertex; expected a whole number other than 0, such as 7, 7/2 or 7//3");
+                                " names no vertex; expected a whole number other than 0, e.g. 7, 7/2 or 7//3");
   }
   if (number > 0) return number;
   const std::int64_t counted = static_cast<std::int64_t>(vertices_above) + 1 + number;
@@ -71,7 +70,7 @@ std::vector<std::int64_t> face_corners(const std::vector<std::string_view>& stat
   return corners;
 }
 
-// A vt statement, v being 0 where it has one number; not a number where it has none.
+// A vt statement; v is 0 if there is one number, NaN without numbers.
 Eigen::Vector2d picture_point(const std::vector<std::string_view>& statement) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector2d point(unknown, unknown);
@@ -81,7 +80,7 @@ Eigen::Vector2d picture_point(const std::vector<std::string_view>& statement) {
   return point;
 }
 
-// The picture point of a corner such as 7/2 or -1/-2/3, from 0; no_place where there is none.
+// Index, from 0, of the texture point of a corner, e.g. 7/2 or -1/-2/3; no_place if there is none.
 std::uint32_t place_of(std::string_view corner, std::size_t points_above) {
   const std::size_t slash = corner.find('/');
   if (slash == std::string_view::npos) return no_place;
@@ -98,9 +97,9 @@ std::string face_statement(std::span<const std::int64_t> corners) {
   return statement + "\n";
 }
 
-// The scan with one more face of at least three corners.
+// Adds a face of at least three corners to the scan.
 ObjScan with_face(ObjScan scan, ObjFace face, std::span<const std::int64_t> corners) {
-  if (corners.size() <= 255) {  // tinyobjloader counts them in one byte
+  if (corners.size() <= 255) {  // tinyobjloader counts corners in one byte
     scan.geometry += face_statement(corners);
   } else {
     scan.geometry += face_statement(corners.first(3));
@@ -117,7 +116,7 @@ void check_vertices_exist(const HighestVertex& highest, std::size_t vertices, co
                                                     " vertices in the file; fix the index");
 }
 
-// Refraction, with ray tracing or without.
+// Illumination models with refraction.
 bool is_of_glass(int illumination) {
   return illumination == 4 || illumination == 6 || illumination == 7 || illumination == 9;
 }
@@ -130,22 +129,22 @@ MtlPane pane_with(const MtlTransparency& stated, const Spectrum& transmittance, 
   return {transmittance, plausible_index(stated.index.value_or(usual_index)), std::move(statement)};
 }
 
-// The transmittance by d or Tr, colored by Tf: one of 0 is a default that would make the material opaque.
+// The transmittance by d or Tr, times Tf. A Tf of 0 is a default, which would make the material opaque, and is ignored.
 MtlPane filtered(const MtlTransparency& stated, double share, const std::string& statement) {
   const bool is_coloured = stated.filter && (*stated.filter > 0).any() && (*stated.filter != 1).any();
   if (!is_coloured) return pane_with(stated, Spectrum::Constant(3, share), statement);
   return pane_with(stated, share * *stated.filter, statement + " and " + shown(*stated.filter));
 }
 
-// Reflection without refraction, with ray tracing or without.
+// Illumination models with reflection but no refraction.
 bool is_of_mirror(int illumination) { return illumination == 3 || illumination == 5 || illumination == 8; }
 
-// Blender writes Ns 1000 for a roughness of 0, and 250 for its usual one of 0.5.
+// Blender writes Ns 1000 for roughness 0, and Ns 250 for its default 0.5.
 bool is_smooth(const MtlReflection& stated) {
   return (!stated.exponent || *stated.exponent >= 900) && stated.roughness <= most_roughness && !stated.has_textures;
 }
 
-// Kd and Ke of one material, what lets light through, and what reflects it as a mirror does.
+// Kd and Ke of a material, and its statements on transparency and specular reflection.
 struct Statements {
   std::optional<Spectrum> reflectance;
   std::optional<Spectrum> radiance;
@@ -155,7 +154,7 @@ struct Statements {
   std::uint32_t mask_line = 0;
 };
 
-// A line of the file, its words, and the file's name for messages.
+// A line of the file, its words, and the file name for messages.
 struct MtlLine {
   const TextLine& line;
   std::vector<std::string_view> words;
@@ -201,8 +200,8 @@ void take(Statements& material, const MtlLine& statement) {
   if (key == "Pm") material.reflection.metallic = one_number(statement);
 }
 
-// The statements of every material, read here because tinyobjloader turns what it cannot read into 0 and rounds the
-// rest (0.75 to 0.75 + 1e-16). Of materials with the same name the first counts.
+// The statements of every material. tinyobjloader turns invalid numbers into 0 and rounds others (0.75 to 0.75 +
+// 1e-16). Among materials with the same name the first one is used.
 std::map<std::string, Statements> read_statements(const std::vector<TextLine>& lines, const std::string& file) {
   std::map<std::string, Statements> materials;
   Statements ignored;
@@ -221,7 +220,7 @@ std::map<std::string, Statements> read_statements(const std::vector<TextLine>& l
 
 bool any(const tinyobj::real_t (&color)[3]) { return color[0] != 0 || color[1] != 0 || color[2] != 0; }
 
-// The files of textures that a material names.
+// The texture files of a material.
 std::vector<std::string> textures_of(const tinyobj::material_t& m) {
   std::vector<std::string> textures;
   for (const std::string* texture :
@@ -241,7 +240,7 @@ std::optional<MtlMirror> mirror_from(const tinyobj::material_t& read, MtlReflect
   return mtl_mirror(stated);
 }
 
-// Another channel of the picture than its alpha or numbers (-imfchan), or numbers that are changed (-mm).
+// Options that select another channel (-imfchan) or change the numbers (-mm).
 bool has_changed_numbers(const tinyobj::texture_option_t& options) {
   return options.imfchan != 'm' || options.brightness != 0 || options.contrast != 1;
 }
@@ -365,7 +364,7 @@ std::optional<MtlMirror> mtl_mirror(const MtlReflection& stated) {
     if (!(stated.diffuse > 0).any()) return std::nullopt;
     return MtlMirror{stated.diffuse, Spectrum::Zero(3), statement + " and Pm " + rounded(stated.metallic)};
   }
-  // Where the diffuse part takes all, none is left.
+  // A diffuse reflectance of 1 leaves nothing to reflect specularly.
   if (!(stated.specular->min(1 - stated.diffuse) > 0).any()) return std::nullopt;
   return MtlMirror{*stated.specular, stated.diffuse, statement};
 }
@@ -401,7 +400,7 @@ Diagnostics notes_on_ignored(std::span<const MtlMaterial> materials) {
       [](const MtlMaterial& m) { return !m.has_reflectance; });
   note("Ks (gloss) is ignored", [](const MtlMaterial& m) { return m.is_specular && !m.mirror; });
   note("Pm (metal) is ignored, the surface is matt", [](const MtlMaterial& m) { return m.is_metallic && !m.mirror; });
-  add(DiagnosticCode::simplified_picture, "map_Kd counts by the mean colour of its picture",
+  add(DiagnosticCode::simplified_picture, "map_Kd is replaced by the mean color of its picture",
       [](const MtlMaterial& m) { return m.has_mean && (!m.texture || m.pane || m.mirror); });
   note("textures are ignored, Kd is used instead",
        [](const MtlMaterial& m) { return m.textures.size() > (m.has_mean ? 1U : 0U) + (m.has_mask ? 1U : 0U); });

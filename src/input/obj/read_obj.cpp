@@ -26,19 +26,19 @@
 namespace patchlight {
 namespace {
 
-// The material files that the mtllib statements of an OBJ file name.
+// The material files of an OBJ file's mtllib statements.
 struct Libraries {
-  std::vector<MtlMaterial> materials;        // of those with the same name only the first counts
+  std::vector<MtlMaterial> materials;        // among those with the same name the first one is used
   std::vector<std::string> texts;            // the files' bytes, for the checksum
-  std::vector<std::filesystem::path> files;  // the files, and the textures that they name
-  Diagnostics problems;  // files that are missing, or beside the model instead of where they should be
+  std::vector<std::filesystem::path> files;  // the files and their textures
+  Diagnostics problems;                      // files that are missing, or were found beside the model
 };
 
-// A file that an mtllib statement names, and where it is; an empty place when it is nowhere.
+// A file of an mtllib statement, and its path; empty if not found.
 struct LibraryFile {
   std::string name;
   std::filesystem::path place;
-  bool moved = false;  // it is beside the model instead of where the statement says
+  bool moved = false;  // found beside the model instead of at the stated path
 };
 
 bool is_file(const std::filesystem::path& file) {
@@ -46,8 +46,7 @@ bool is_file(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, error);
 }
 
-// The files of a folder by their names in lower case, of several names that differ in capitals alone the first. Listed
-// when it is asked for, once.
+// The files of a folder by lower-case name, the first one if several names differ only in case. Listed once, on demand.
 class Folder {
  public:
   explicit Folder(std::filesystem::path place) : place_(std::move(place)) {}
@@ -75,8 +74,8 @@ class Folder {
   bool listed_ = false;
 };
 
-// Where the name says; else beside the model, under the last part of the name, in capitals or not. A path may have been
-// written under Windows. Places outside of `confine` are refused unseen.
+// Looks at the stated path, then beside the model for the last part of the name, ignoring case. Paths may be Windows
+// paths. Paths outside `confine` are refused without a look.
 LibraryFile find_library(Folder& beside, const std::string& name, const std::string& where,
                          const std::filesystem::path& confine) {
   const std::filesystem::path& folder = beside.place();
@@ -95,7 +94,7 @@ LibraryFile find_library(Folder& beside, const std::string& name, const std::str
   return {name, folder / *similar, true};
 }
 
-// The files an mtllib statement names. A name may hold spaces: when the whole statement is a file, it is the only one.
+// The files of an mtllib statement. Names may contain spaces: if the whole text names a file, it is the only one.
 std::vector<LibraryFile> library_files(Folder& beside, const ObjName& statement, const std::string& where,
                                        const std::filesystem::path& confine) {
   const LibraryFile whole = find_library(beside, statement.name, where, confine);
@@ -108,13 +107,13 @@ std::vector<LibraryFile> library_files(Folder& beside, const ObjName& statement,
   return all_there || whole.place.empty() ? files : std::vector{whole};
 }
 
-// A texture stands beside the material file; its path may have been written under Windows.
+// The path of a texture, relative to the material file; it may be a Windows path.
 std::string place_of(std::string texture, const std::filesystem::path& library) {
   std::replace(texture.begin(), texture.end(), '\\', '/');
   return texture.empty() ? texture : (library.parent_path() / texture).string();
 }
 
-// The file and the textures that its materials name, which stand beside it.
+// The file and the textures of its materials.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& library,
                                             const std::vector<MtlMaterial>& materials) {
   std::vector<std::filesystem::path> files = {library};
@@ -129,17 +128,17 @@ std::optional<Diagnostic> problem_with(const LibraryFile& file, const std::strin
   if (file.place.empty()) {
     return Diagnostic{DiagnosticCode::missing_material_file,
                       found +
-                          "which is neither there nor beside the model; the materials that no other file defines "
-                          "are grey, reflectance 0.5"};
+                          "which is neither there nor beside the model; materials that no other file defines "
+                          "are gray, reflectance 0.5"};
   }
   if (!file.moved) return std::nullopt;
   return Diagnostic{DiagnosticCode::moved_material_file,
                     found + "which is not there; " + file.place.string() + " is taken instead"};
 }
 
-// Reads the files that the statements name. A file that is not where its name says is looked for beside the model,
-// under the last part of its name, in capitals or not. Throws InputError when one cannot be read, or does not
-// lie in the folder `confine`, if there is one.
+// Reads the files of the mtllib statements. A file missing at its path is searched beside the model, by the last part
+// of its name, ignoring case. Throws InputError when a file cannot be read, or lies outside the folder `confine` (if
+// given).
 Libraries read_libraries(const std::filesystem::path& obj, const std::vector<ObjName>& statements,
                          const std::filesystem::path& confine) {
   Libraries libraries;
@@ -167,7 +166,7 @@ Libraries read_libraries(const std::filesystem::path& obj, const std::vector<Obj
   return libraries;
 }
 
-// The mask that the picture of map_d is.
+// The mask of the picture of map_d.
 std::optional<PictureMask> mask_of(const MtlMaterial& material, const PictureColours& pictures) {
   const auto found = pictures.masks.find(material.mask_picture);
   if (found == pictures.masks.end()) return std::nullopt;
@@ -175,9 +174,8 @@ std::optional<PictureMask> mask_of(const MtlMaterial& material, const PictureCol
   return is_colour_alone ? PictureMask{1, std::nullopt} : found->second;
 }
 
-// The pane that d and Tr make of the covered share, and light straight through the rest: T = 1 - m + m T_d. Holes alone
-// have no index of refraction. What is covered has the mean color of map_Kd, or that of its part that is covered where
-// its own alpha tells.
+// Combines the pane of d and Tr in the covered part m with the open rest: T = 1 - m + m T_d. Holes alone have index 1.
+// The reflectance is the mean color of map_Kd, or of its covered part if the mask is its own alpha.
 MtlMaterial with_holes(MtlMaterial material, const PictureMask& mask, const Spectrum& factor) {
   const double m = mask.covered;
   const std::string statement = "map_d covers " + rounded(m);
@@ -195,9 +193,8 @@ MtlMaterial with_holes(MtlMaterial material, const PictureMask& mask, const Spec
   return material;
 }
 
-// With the picture of map_Kd and its mean color, times Kd where it is not 0, as exporters write it beside a picture,
-// and with the holes of map_d. Where map_d is the picture of map_Kd its alpha counts, and without any it makes no
-// holes.
+// Applies map_Kd and map_d. The reflectance is the mean color of map_Kd times Kd, unless Kd is 0: exporters write 0
+// beside a texture. If both maps name the same picture, its alpha is the mask; without alpha it has no holes.
 MtlMaterial with_picture(MtlMaterial material, const PictureColours& pictures) {
   const bool has_factor = material.has_reflectance && (material.reflectance > 0).any();
   const Spectrum factor = has_factor ? material.reflectance : rgb(1, 1, 1);
@@ -216,7 +213,7 @@ MtlMaterial with_picture(MtlMaterial material, const PictureColours& pictures) {
   return mask && mask->covered < 1 ? with_holes(std::move(material), *mask, factor) : material;
 }
 
-// The pictures that map_Kd and map_d name. `model` is the file that names the material files.
+// The pictures of map_Kd and map_d. `model` is the file that names the material files.
 PictureColours pictures_of(std::span<const MtlMaterial> materials, const std::filesystem::path& confine,
                            const std::string& model) {
   std::set<std::filesystem::path> names;
@@ -227,7 +224,7 @@ PictureColours pictures_of(std::span<const MtlMaterial> materials, const std::fi
   return picture_colours({names.begin(), names.end()}, confine, model);
 }
 
-// One sentence for each map_Kd and map_d whose picture cannot be read, and one on those that leave holes.
+// A note for each map_Kd and map_d that cannot be read, and one on masks with holes.
 Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const PictureColours& pictures) {
   Diagnostics notes;
   const auto note = [&](const MtlMaterial& material, const std::string& picture, const std::string& statement,
@@ -250,7 +247,7 @@ Diagnostics notes_on_pictures(std::span<const MtlMaterial> materials, const Pict
 
 constexpr const char* default_name = "default";
 
-// Indices of materials by name; the first one of a name counts.
+// Indices of materials by name; the first one of a name is used.
 using IndexByName = std::map<std::string, std::size_t>;
 
 IndexByName index_by_name(std::span<const MtlMaterial> defined) {
@@ -268,7 +265,7 @@ MtlMaterial grey_material(const std::string& name) {
   return material;
 }
 
-// The materials of the names that usemtl statements use and no file defines, and the one for faces before any usemtl.
+// Materials for names in usemtl without a definition, and for faces before any usemtl.
 std::vector<MtlMaterial> undefined_materials(const ObjScan& scan, std::span<const MtlMaterial> defined) {
   std::vector<MtlMaterial> undefined;
   IndexByName known = index_by_name(defined);
@@ -293,7 +290,7 @@ std::vector<std::size_t> face_materials(const ObjScan& scan, std::span<const Mtl
   return materials;
 }
 
-// The materials that faces use, in their order of definition.
+// The used materials, in order of definition.
 struct ObjPalette {
   std::vector<MtlMaterial> materials;
   std::vector<MaterialIndex> of_face;
@@ -331,8 +328,7 @@ std::vector<tinyobj::shape_t> parse_shapes(const ObjScan& scan, const std::strin
   return shapes;
 }
 
-// The scene with polygons and groups added. Shapes hold the faces in the file's order, so the k-th face read is the
-// k-th face scanned.
+// Adds polygons and groups. Shapes hold the faces in file order: the k-th face of the shapes is the k-th of the scan.
 Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const ObjScan& scan,
                     std::span<const MaterialIndex> materials) {
   GroupIndex groups;
@@ -353,7 +349,7 @@ Scene with_polygons(Scene scene, std::span<const tinyobj::shape_t> shapes, const
   return scene;
 }
 
-// The corners of a face in the picture of its material: v from the top, as -s and -o have it.
+// Texture coordinates of the corners of a face, with v from the top and -s and -o applied.
 std::vector<Eigen::Vector2d> picture_places(const ObjScan& scan, const ObjFace& face, std::size_t corners,
                                             const TextureOptions& options) {
   std::vector<Eigen::Vector2d> places;
@@ -365,7 +361,7 @@ std::vector<Eigen::Vector2d> picture_places(const ObjScan& scan, const ObjFace& 
   return places;
 }
 
-// The scene with the pictures of the palette on its polygons, which are the faces in the scan's order.
+// Adds the textures of the palette to the polygons, which are the faces in scan order.
 Scene with_texture_maps(Scene scene, const ObjScan& scan, const ObjPalette& palette) {
   MappedFaces mapped(scene.file);
   for (std::size_t f = 0; f < scene.polygons.size(); ++f) {
@@ -412,7 +408,7 @@ Diagnostics problems_with_names(const std::string& file, const ObjScan& scan, st
   if (!unknown.empty()) {
     problems.push_back({DiagnosticCode::unknown_material,
                         "usemtl names " + first_few(unknown) +
-                            ", which no material file defines; such materials are grey, reflectance 0.5",
+                            ", which no material file defines; such materials are gray, reflectance 0.5",
                         unknown.size()});
   }
   Diagnostic without{DiagnosticCode::no_material};
@@ -437,14 +433,14 @@ Material obj_material(const MtlMaterial& read) {
   if (!read.pane) return material;
   material = as_pane(std::move(material), read.pane->transmittance, read.pane->index, read.pane->statement);
   if (!read.pane->reflectance) return material;
-  // There in part.
+  // Covered part only.
   material.reflectance = *read.pane->reflectance;
   material.stated_pane->matt_exitance = material.exitance;
   material.exitance *= read.covered;
   return material;
 }
 
-// Materials that do not emit, but have a Ka above 1: some programs mean a lamp by that.
+// Materials without emission but with Ka above 1: some programs mean lamps.
 std::vector<LampHint> lamp_hints(std::span<const MtlMaterial> materials) {
   std::vector<LampHint> hints;
   for (const MtlMaterial& material : materials) {

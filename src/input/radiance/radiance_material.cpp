@@ -24,20 +24,19 @@ RadianceMaterial translucent_of(const std::string& name, const std::vector<doubl
   const double straight = numbers[transmitted + 1];
   std::string simplified;
   if (through > 0 && straight > 0 && straight < 1)
-    simplified =
-        straight > 0.5 ? "light that goes through scattered is lost" : "light that goes straight through is lost";
+    simplified = straight > 0.5 ? "scattered transmitted light is lost" : "directly transmitted light is lost";
   if (gloss > 0) simplified += (simplified.empty() ? "" : ", ") + std::string(matt_gloss);
   return {translucent(name, colour_in(numbers), gloss, through, straight), simplified};
 }
 
-// A solid body of glass; the two faces of a sheet of it count once, as those of panes do.
+// A solid body of glass; two parallel faces of a sheet count as one pane.
 RadianceMaterial body_of_glass(const std::string& name, double stated_index) {
   const double index = plausible_index(stated_index);
   Material material = black(name);
   const double share = highest_transmittance(index);
   material.transmittance = rgb(share, share, share);
   material.index = index;
-  return {material, "what it absorbs and how it bends light are left out: its surfaces are thin clear panes"};
+  return {material, "absorption and refraction are ignored: its surfaces are thin clear panes"};
 }
 
 RadianceMaterial glossy(const std::string& kind, const std::string& name, const std::vector<double>& numbers) {
@@ -50,8 +49,7 @@ RadianceMaterial glossy(const std::string& kind, const std::string& name, const 
 
 RadianceMaterial light_of(const std::string& kind, const std::string& name, const std::vector<double>& numbers) {
   if (kind == "spotlight")
-    return {black(name), "its beam is not carried, it emits nothing: a [[luminaire]] of kind \"spot\" can stand for it",
-            true};
+    return {black(name), "its beam is not supported and emits nothing: use a [[luminaire]] of kind \"spot\"", true};
   if (kind == "glow" && numbers[3] < 0) return {black(name), "it gives no light, as its radius is negative"};
   return {emitter(name, colour_in(numbers)), kind == "illum" ? "it emits evenly, as a light does" : ""};
 }
@@ -149,7 +147,7 @@ void RadianceModifiers::define(const RadiancePrimitive& primitive, const std::st
   } else {
     require_numbers(primitive, where);
   }
-  // An alias keeps what modifies its original unless it has a modifier of its own.
+  // An alias keeps the modifier of its original unless it has its own.
   modifier.under = place_of(primitive.modifier).value_or(modifier.under);
   last_[primitive.name] = all_.size();
   all_.push_back(std::move(modifier));

@@ -22,7 +22,7 @@ struct RadianceBox {
   std::string material;
   std::string name;
   Vector size = Vector::Zero();
-  double inset = 0;  // from the sides of the box: the bevel or the radius of its edges
+  double inset = 0;  // from the sides of the box: bevel, or radius of the edges
   Edges edges = Edges::sharp;
   bool is_inward = false;
 };
@@ -60,7 +60,7 @@ using Corner = unsigned;
 
 bool is_far(Corner corner, Eigen::Index axis) { return (corner >> static_cast<unsigned>(axis) & 1U) != 0; }
 
-// The corner moved inward along all axes by the inset.
+// The corner moved inward by the inset along all axes.
 Point inner_point(const RadianceBox& box, Corner corner) {
   Point point;
   for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -68,7 +68,7 @@ Point inner_point(const RadianceBox& box, Corner corner) {
   return point;
 }
 
-// The same on the side of the box across `axis`.
+// The corner moved inward along all axes except `axis`.
 Point point_on_side(const RadianceBox& box, Corner corner, Eigen::Index axis) {
   Point point = inner_point(box, corner);
   point[axis] = is_far(corner, axis) ? box.size[axis] : 0;
@@ -80,7 +80,7 @@ class BoxSurfaces {
   explicit BoxSurfaces(RadianceBox box) : box_(std::move(box)) {}
 
   void add_polygon(std::vector<Point> corners) {
-    // The box is convex: a front looks away from its middle.
+    // The box is convex: fronts point away from its center.
     const bool looks_outward = area_vector(corners).dot(corners[0] - box_.size / 2) > 0;
     if (looks_outward == box_.is_inward) std::reverse(corners.begin(), corners.end());
     RadiancePrimitive& polygon = add("polygon");
@@ -110,7 +110,7 @@ class BoxSurfaces {
 
 constexpr std::size_t most_copies = 100'000;
 
-// The words, of which numbers and others are taken one after the other.
+// Takes numbers and other words one after another.
 class XformWords {
  public:
   XformWords(std::span<const std::string> words, const std::string& where) : words_(words), where_(where) {}
@@ -147,7 +147,7 @@ class XformWords {
   std::string option_;
 };
 
-// Options that move: nothing for another one.
+// The transformation of an option; empty for other options.
 std::optional<Eigen::Affine3d> step_of(const std::string& option, XformWords& words) {
   Eigen::Affine3d step = Eigen::Affine3d::Identity();
   const std::size_t axis = option.size() == 3 ? std::string("xyz").find(option[2]) : std::string::npos;
@@ -171,14 +171,14 @@ std::optional<Eigen::Affine3d> step_of(const std::string& option, XformWords& wo
   return step;
 }
 
-// A movement, with the count before it: once, so many times over, or, for a copy each, none to so many times.
+// A transformation with its count: repeated -i times, or copied 0 to n - 1 times for -a.
 struct Block {
   std::size_t count = 1;
   bool is_array = false;
   Eigen::Affine3d step = Eigen::Affine3d::Identity();
 };
 
-// So many times over, by squares.
+// Repeated squaring.
 Eigen::Affine3d power(Eigen::Affine3d step, std::size_t count) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   for (; count > 0; count /= 2, step = step * step) {
@@ -187,7 +187,7 @@ Eigen::Affine3d power(Eigen::Affine3d step, std::size_t count) {
   return result;
 }
 
-// Every place, moved on by every step of the block: the last array changes fastest.
+// Combines all placements with all steps of the block: the last array varies fastest.
 std::vector<Eigen::Affine3d> moved_by(const std::vector<Eigen::Affine3d>& places, const Block& block,
                                       const XformWords& words) {
   if (block.is_array && places.size() * block.count > most_copies)
@@ -202,7 +202,7 @@ std::vector<Eigen::Affine3d> moved_by(const std::vector<Eigen::Affine3d>& places
   return moved;
 }
 
-// Every place, moved on by each line of a file.
+// Combines all placements with each line of a file.
 std::vector<Eigen::Affine3d> moved_by_lines(const std::vector<Eigen::Affine3d>& places,
                                             const std::vector<std::vector<std::string>>& lines,
                                             const std::string& where) {
@@ -230,7 +230,7 @@ std::vector<RadiancePrimitive> radiance_genbox(std::span<const std::string> argu
     const Corner along = 1U << static_cast<unsigned>(axis);
     const Corner next = 1U << static_cast<unsigned>((axis + 1) % 3);
     const Corner last = 1U << static_cast<unsigned>((axis + 2) % 3);
-    // The sides across this axis
+    // Sides across this axis
     for (const Corner side : {0U, along}) {
       std::vector<Point> corners;
       for (const Corner corner : {side, side | next, side | next | last, side | last})
@@ -238,7 +238,7 @@ std::vector<RadiancePrimitive> radiance_genbox(std::span<const std::string> argu
       surfaces.add_polygon(std::move(corners));
     }
     if (box.edges == Edges::sharp) continue;
-    // The edges along this axis
+    // Edges along this axis
     for (const Corner edge : std::array{0U, next, last, next | last}) {
       if (box.edges == Edges::round) {
         surfaces.add_cylinder(inner_point(box, edge), inner_point(box, edge | along));
@@ -249,7 +249,7 @@ std::vector<RadiancePrimitive> radiance_genbox(std::span<const std::string> argu
                             point_on_side(box, edge | along, b), point_on_side(box, edge, b)});
     }
   }
-  // The corners
+  // Corners
   constexpr Corner corners = 8;
   for (Corner corner = 0; corner < corners && box.edges != Edges::sharp; ++corner) {
     if (box.edges == Edges::round)

@@ -56,7 +56,7 @@ std::size_t RadianceText::count(const std::string& what) {
   return static_cast<std::size_t>(*number);
 }
 
-// To the end of the line, or of the last one that a backslash continues.
+// Reads to the end of the line; a backslash continues it.
 std::string_view RadianceText::command() {
   word_line_ = line_;
   const std::size_t begin = ++at_;

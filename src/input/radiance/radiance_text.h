@@ -13,24 +13,24 @@ namespace patchlight {
 /// A statement of a Radiance scene file: a primitive, or a line that starts a program.
 struct RadiancePrimitive {
   std::string modifier;
-  std::string kind;  ///< "polygon"; "alias", whose only word is the name it stands for; "!" for a program
+  std::string kind;  ///< "polygon"; "alias", whose only word is its target; "!" for a program
   std::string name;
-  std::vector<std::string> words;  ///< its string arguments; of a program, the line without "!"
-  std::vector<double> numbers;     ///< its real arguments
-  std::uint32_t line = 0;          ///< where it begins
+  std::vector<std::string> words;  ///< string arguments; for a program, the line without "!"
+  std::vector<double> numbers;     ///< real arguments
+  std::uint32_t line = 0;          ///< first line
 };
 
-/// The primitives of a Radiance scene file, one after the other. Words are separated by white space, may be in quotes,
-/// and what follows a word that begins with # is a comment.
+/// Reads the primitives of a Radiance scene file. White space separates words, quotes enclose them, and a word that
+/// begins with # starts a comment.
 class RadianceText {
  public:
-  /// The text has to live as long as this.
+  /// `text` must outlive this object.
   RadianceText(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
   /// True when there is another primitive.
   bool has_more();
 
-  /// The next one. \throws InputError naming the line: the file ends within it, or what should be a number is none.
+  /// The next primitive. \throws InputError naming the line at a premature end, or for an invalid number.
   RadiancePrimitive next();
 
  private:
@@ -46,8 +46,8 @@ class RadianceText {
   std::uint32_t word_line_ = 1;  // of the last word
 };
 
-/// The programs of a line, each with its words, quotes taken off; a pipe leads from one to the next. An empty list
-/// where a shell would do more with it: lists of programs, variables, patterns.
+/// The programs of a pipe, each with its words without quotes. Empty if the line needs a shell: lists of programs,
+/// variables, patterns.
 std::vector<std::vector<std::string>> piped_commands(std::string_view command);
 
 }  // namespace patchlight

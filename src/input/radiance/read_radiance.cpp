@@ -44,7 +44,7 @@ FacetedShape outline_of(const RadiancePrimitive& primitive) {
   return shape;
 }
 
-// With two radii, or one for both ends.
+// A cone, or a cylinder with one radius for both ends.
 FacetedShape cone_of(const RadiancePrimitive& primitive) {
   const double first = primitive.numbers[6];
   return faceted_cone(point_at(primitive, 0), point_at(primitive, 3), first,
@@ -72,17 +72,17 @@ void require_arguments(const RadiancePrimitive& primitive, const std::string& wh
     throw InputError(where, primitive.kind + " " + primitive.name + " has a negative radius; expected 0 or more");
 }
 
-// True for the kinds of surfaces that have a shape of their own.
+// True for surfaces with geometry of their own.
 bool is_radiance_surface(const std::string& kind) {
   constexpr std::array surfaces = {"polygon", "sphere", "bubble", "cylinder", "tube", "cone", "cup", "ring"};
   return std::find(surfaces.begin(), surfaces.end(), kind) != surfaces.end();
 }
 
-// True for those that facets stand for.
+// True for surfaces that are replaced by facets.
 bool is_round(const std::string& kind) { return is_radiance_surface(kind) && kind != "polygon"; }
 
-// The faces of such a surface, in units of the file; a polygon has one. Throws InputError at `where`: it has another
-// number of arguments than it should, a length or a radius that is not above 0.
+// The faces of such a surface, in units of the file; a polygon has one. Throws InputError at `where` for a wrong number
+// of arguments, or for a length or radius that is not positive.
 FacetedShape radiance_surface(const RadiancePrimitive& primitive, const std::string& where) {
   require_arguments(primitive, where);
   const std::string& kind = primitive.kind;
@@ -101,24 +101,24 @@ FacetedShape radiance_surface(const RadiancePrimitive& primitive, const std::str
   return is_inside_out ? turned_inside_out(std::move(shape)) : shape;
 }
 
-// Light from far away, from the disk that Radiance's source subtends on the sphere of directions.
+// Light from infinity, from the disk of a Radiance source on the sphere of directions.
 struct FarSource {
   std::string name;
-  Vector direction;          // unit, towards it
-  double degrees = 0;        // across the disk
+  Vector direction;          // unit, toward the source
+  double degrees = 0;        // angular diameter
   Spectrum radiance{};       // W/(m^2 sr)
-  bool has_pattern = false;  // the radiance varies over it
+  bool has_pattern = false;  // the radiance varies
 };
 
 constexpr double most_degrees_of_a_sun = 5;
 
-// A half sphere around the vertical, or all of it.
+// A hemisphere around the vertical, or the full sphere.
 bool is_sky(const FarSource& source) {
   const bool is_half = source.degrees >= 179.9 && std::abs(source.direction.z()) > 0.999;
   return !source.has_pattern && (is_half || source.degrees >= 359);
 }
 
-// E = L pi sin^2(a / 2) across the direction to a disk of angle a: 6.7967e-5 sr for the sun's .533 degrees.
+// E = L pi sin^2(a / 2) normal to a disk of angular diameter a: 6.7967e-5 sr for the sun's 0.533 degrees.
 Sun far_sun(const FarSource& source) {
   const double radius = source.degrees * std::numbers::pi / 360;
   return {source.direction, source.radiance * std::numbers::pi * std::pow(std::sin(radius), 2)};
@@ -131,8 +131,8 @@ Sky with_half(Sky sky, const FarSource& source) {
   return sky;
 }
 
-// A source primitive, turned by `turn`; its radiance is left open. Throws InputError at `where`: it has no four
-// numbers, no direction or no angle.
+// Reads a source primitive, rotated by `turn`, without its radiance. Throws InputError at `where` without four numbers,
+// a direction or an angle.
 FarSource far_source(const RadiancePrimitive& primitive, const Eigen::Matrix3d& turn, const std::string& where) {
   if (primitive.numbers.size() != 4)
     throw InputError(where, "source " + primitive.name + " has " + std::to_string(primitive.numbers.size()) +
@@ -144,8 +144,8 @@ FarSource far_source(const RadiancePrimitive& primitive, const Eigen::Matrix3d& 
   return {primitive.name, direction.stableNormalized(), degrees};
 }
 
-// The scene with what can be carried: the first disk up to 5 degrees across is the sun, even half spheres above and
-// below are an even sky and the ground. Notes name the others, and what to do for a sky.
+// Adds supported sources: the first disk up to 5 degrees becomes the sun, uniform hemispheres become a uniform sky and
+// the ground. Notes list the others, with advice for skies.
 Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
   LeftOut left_out;
   for (const FarSource& source : sources) {
@@ -171,16 +171,16 @@ Scene with_far_sources(Scene scene, const std::vector<FarSource>& sources) {
 
 namespace fs = std::filesystem;
 
-// The place of things below an !xform in the scene.
+// The placement of objects below an !xform.
 struct Frame {
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();
-  std::string modifier;  // instead of those of surfaces; empty: their own
+  std::string modifier;  // replaces the modifiers of surfaces; empty: none
   std::string prefix;
   bool turns_fronts = false;
-  std::uint32_t line = 0;  // in the file at the top; 0 there
+  std::uint32_t line = 0;  // line in the main file; 0 in the main file itself
 };
 
-// The outer frame counts where both name a modifier: it is done last.
+// If both frames name a modifier, the outer one wins: it is applied last.
 Frame inside(const Frame& outer, const RadianceXform& xform, const Eigen::Affine3d& copy, std::uint32_t line) {
   return {outer.placement * copy, outer.modifier.empty() ? xform.modifier : outer.modifier,
           xform.name.empty() ? outer.prefix : outer.prefix + xform.name + ".", outer.turns_fronts != xform.turns_fronts,
@@ -207,7 +207,7 @@ class RadianceReader {
   }
 
  private:
-  // A file that several others name is read once.
+  // Reads a file once, even if several files name it.
   const std::string& text_of(const fs::path& file, const std::string& where) {
     const auto [found, is_new] = texts_.try_emplace(file.lexically_normal().string());
     if (is_new) {
@@ -218,7 +218,7 @@ class RadianceReader {
     return found->second;
   }
 
-  // Beside the file that names it, or in the current folder.
+  // Looks beside the file that names it, then in the current folder.
   fs::path found_file(const std::string& name, const fs::path& named_by, const std::string& where) const {
     const fs::path beside = named_by.parent_path() / name;
     for (const fs::path& candidate : {beside, fs::path(name)}) {
@@ -269,7 +269,7 @@ class RadianceReader {
     return lines;
   }
 
-  // A line that starts programs: genbox and xform are done here, no other is run.
+  // A line with programs: genbox and xform are emulated; no program is run.
   void run(const RadiancePrimitive& command, const fs::path& file, const Frame& frame) {
     const std::string where = at_line(file, command.line);
     const std::vector<std::vector<std::string>> stages = piped_commands(command.words[0]);
@@ -292,7 +292,7 @@ class RadianceReader {
         where + " !" + text.substr(0, 60));
   }
 
-  // The last program moves the surfaces of those before it.
+  // The last program transforms the surfaces of those before it.
   void add_piped(std::span<const std::vector<std::string>> stages, const fs::path& file, const Frame& frame,
                  std::uint32_t line) {
     const std::string where = at_line(file, line);
@@ -319,7 +319,7 @@ class RadianceReader {
     return radiance_xform(words, where, [&](const std::string& name) { return lines_of(name, file, where); });
   }
 
-  // Octrees and meshes are in forms of their own; a scene file may stand for one.
+  // Octrees and meshes have binary formats; a scene file may replace them.
   void add_instance(const RadiancePrimitive& primitive, const fs::path& file, const Frame& frame) {
     const std::string where = at_line(file, primitive.line);
     if (primitive.words.empty()) throw InputError(where, primitive.kind + " " + primitive.name + " names no file");
@@ -335,7 +335,7 @@ class RadianceReader {
       read(found_file(primitive.words[0], file, where), inside(frame, xform, copy, primitive.line), where);
   }
 
-  // The modifier that a surface has; nothing for void. \throws InputError when it is not defined.
+  // The modifier of a surface; empty for void. \throws InputError if undefined.
   std::optional<std::size_t> modifier_of(const RadiancePrimitive& primitive, const Frame& frame,
                                          const std::string& where) const {
     const std::string& name = frame.modifier.empty() ? primitive.modifier : frame.modifier;
@@ -346,7 +346,7 @@ class RadianceReader {
                                 "'materials.mat room.rad'");
   }
 
-  // Nothing for what lets light pass as if it were not there.
+  // Empty for modifiers that light passes unchanged.
   std::optional<MaterialIndex> material_of(std::size_t place) {
     const auto [known, is_new] = index_.emplace(place, std::nullopt);
     if (!is_new) return known->second;
@@ -359,7 +359,7 @@ class RadianceReader {
     std::optional<RadianceMaterial> material = radiance_material(modifier.kind, modifier.name, modifier.numbers);
     if (!material) {
       material = RadianceMaterial{{modifier.name, rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}, {}};
-      left_out_.add("materials of a kind that cannot be carried are taken for matt of reflectance 0.5",
+      left_out_.add("unsupported materials become matt with reflectance 0.5",
                     modifier.name + " (" + modifier.kind + ")");
     }
     if (!material->simplified.empty()) {
@@ -388,7 +388,7 @@ class RadianceReader {
                         " sides, moved outward so that areas are kept; of the kind " + primitive.kind,
                     frame.prefix + primitive.name);
     }
-    // A mirrored copy keeps its front.
+    // A reflected copy keeps its front.
     const bool is_mirrored = frame.placement.linear().determinant() < 0;
     const auto placed = [&](const Point& point) { return Point(frame.placement * point); };
     Polygon polygon{.corners = {},
@@ -413,10 +413,10 @@ class RadianceReader {
   RadianceModifiers modifiers_;
   Scene scene_;
   Frame top_;
-  std::vector<fs::path> open_;                // the files that are being read, each named by the one before
-  std::map<std::string, std::string> texts_;  // of files
-  std::vector<std::string> digests_;          // of the same, in the order in which they were read
-  std::map<std::size_t, std::optional<MaterialIndex>> index_;  // of modifiers that surfaces have
+  std::vector<fs::path> open_;                                 // open files, each named by the one before
+  std::map<std::string, std::string> texts_;                   // of files
+  std::vector<std::string> digests_;                           // digests of the files, in reading order
+  std::map<std::size_t, std::optional<MaterialIndex>> index_;  // of the used modifiers
   GroupIndex groups_;
   std::vector<FarSource> sources_;
   LeftOut left_out_;

@@ -13,10 +13,10 @@
 namespace patchlight {
 namespace {
 
-// The table's angles may be so far from the ends that the standard names; degrees.
+// Allowed deviation of the table's end angles from those of the standard, degrees.
 constexpr double angle_tolerance = 0.01;
 
-// Larger counts and numbers are mistakes.
+// Larger counts and numbers are errors.
 constexpr double many = 1e4;
 constexpr double huge = 1e12;
 
@@ -25,7 +25,7 @@ struct Word {
   std::uint32_t line = 0;
 };
 
-// The text behind TILT=, as words separated by spaces and commas; the first is what stands after the equals sign.
+// The text after TILT=, as words separated by spaces and commas; the first word follows the equals sign.
 struct Words {
   std::string file;
   std::vector<Word> words;
@@ -125,7 +125,7 @@ Tilt read_tilt(Words& words) {
 
 bool is_near(double angle, double expected) { return std::abs(angle - expected) < angle_tolerance; }
 
-// The standard allows few ends: they state the directions of the table.
+// The end angles define the directions of the table; the standard allows few.
 void check_vertical(const PhotometricWeb& web, const Words& words) {
   const double first = web.vertical.front();
   const double last = web.vertical.back();
@@ -194,7 +194,7 @@ IesHeader read_header(Words& words) {
   const double unit = words.count("the units type", 1, 2) == 1 ? 0.3048 : 1;  // feet or meters
   Vector stated;                                                              // width, length, height
   for (int axis = 0; axis < 3; ++axis) stated[axis] = words.number("the luminous opening");
-  // LM-63 of 1991 and 1995 state a circle, an upright cylinder and a sphere without their length.
+  // LM-63 of 1991 and 1995 give circles, vertical cylinders and spheres without a length.
   if (stated[0] < 0 && stated[1] == 0) stated[1] = stated[0];
   header.opening = unit * stated.cwiseAbs();
   header.shape = shape_of(stated);

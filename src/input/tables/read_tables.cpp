@@ -32,7 +32,7 @@ std::array<double, 6> six_numbers(const std::string& where, const std::vector<st
   return numbers;
 }
 
-// The line without its comment, and with nothing but spaces between its words.
+// The line without its comment, with words separated by single spaces.
 std::string plain(std::string_view text, std::string_view separators) {
   std::string line(text.substr(0, text.find('#')));
   std::replace_if(
@@ -42,20 +42,20 @@ std::string plain(std::string_view text, std::string_view separators) {
 
 constexpr const char* expected_line = "expected a wavelength in nm and a value, e.g. 550, 0.43";
 
-// More lines than an instrument gives, by far.
+// Far more lines than any instrument writes.
 constexpr std::size_t longest_spectrum = 100'000;
 
-// The spectrum with one more value.
+// Appends a value to the spectrum.
 SampledSpectrum with_value(SampledSpectrum spectrum, double wavelength, double value, const std::string& where) {
   if (!(wavelength > 0)) throw InputError(where, "found the wavelength " + shortest(wavelength) + "; expected nm");
   if (!spectrum.wavelengths.empty() && wavelength <= spectrum.wavelengths.back()) {
     throw InputError(where, "found the wavelength " + shortest(wavelength) + " nm after " +
                                 shortest(spectrum.wavelengths.back()) +
-                                " nm; expected them to grow: sort the lines, and leave out what comes twice");
+                                " nm; expected increasing wavelengths: sort the lines and remove duplicates");
   }
   if (value < 0) {
     throw InputError(where, "found " + shortest(value) + " at " + shortest(wavelength) +
-                                " nm; expected 0 or more: put 0 where an instrument reads less than nothing");
+                                " nm; expected 0 or more: replace negative readings by 0");
   }
   if (spectrum.values.size() >= longest_spectrum)
     throw InputError(where, "found more than " + std::to_string(longest_spectrum) + " values; expected a spectrum");
@@ -86,7 +86,7 @@ SampledSpectrum of_columns(const std::vector<TextLine>& lines, const std::filesy
   return spectrum;
 }
 
-// The number that a keyword of CGATS stands before: SPECTRAL_NORM "100.0".
+// The number after a CGATS keyword, e.g. SPECTRAL_NORM "100.0".
 std::optional<double> keyword(const std::vector<TextLine>& lines, std::string_view name) {
   for (const TextLine& line : lines) {
     const std::vector<std::string_view> found = words(line.text);
@@ -98,7 +98,7 @@ std::optional<double> keyword(const std::vector<TextLine>& lines, std::string_vi
   return std::nullopt;
 }
 
-// Where the values stand among the words of a line of data: the first field SPEC_... of the format.
+// Index of the first value in a line of data: the first field SPEC_... of the format.
 std::size_t first_field(const std::vector<TextLine>& lines) {
   bool is_format = false;
   std::size_t field = 0;
@@ -155,8 +155,8 @@ SampledSpectrum of_cgats(const std::vector<TextLine>& lines, const std::filesyst
   return spectrum;
 }
 
-// Fields of the two kinds of lines that are used, from 0. EnergyPlus, Auxiliary Programs, chapter on weather data.
-// The time zone is in hours, east positive, and the hour from 1 to 24 the one that ends then.
+// Fields of the two kinds of lines in use, from 0 (EnergyPlus, Auxiliary Programs, chapter on weather data). The time
+// zone is in hours, east positive; an hour from 1 to 24 is the end of its interval.
 namespace location {
 enum Field : std::size_t { latitude = 6, longitude, time_zone };
 }
@@ -186,7 +186,7 @@ Line split(const TextLine& line, const std::string& file) {
 
 double irradiance(const Line& line, std::size_t field, const std::string& what) {
   const double value = line.number(field, what);
-  if (value >= 0 && value < 9999) return value;  // which stands for a missing value
+  if (value >= 0 && value < 9999) return value;  // 9999 marks a missing value
   throw InputError(line.where, "the " + what + " of this hour is " + line.fields[field] +
                                    "; expected W/m^2 from 0 to 9998. Choose an hour where it is known");
 }

@@ -13,18 +13,18 @@
 
 namespace patchlight {
 
-/// Reads lines `x y z nx ny nz` separated by spaces, tabs or commas, as for Radiance's rtrace: a position in units of
-/// `metres_per_unit` and a direction of any length. Empty lines and what follows a # are skipped. The group is named
-/// after the file, which may be a pipe. \throws InputError naming the file and line.
+/// Reads lines `x y z nx ny nz` separated by spaces, tabs or commas, like input for Radiance's rtrace: a position in
+/// units of `metres_per_unit` and a direction of any length. Skips empty lines and text after #. The group has the name
+/// of the file, which may be a pipe. \throws InputError naming the file and line.
 SensorGroup read_points(const std::filesystem::path& file, double metres_per_unit);
 
 /// The same from a text; `file` gives the group its name.
 SensorGroup parse_points(std::string_view text, const std::filesystem::path& file, double metres_per_unit);
 
-/// Reads a spectrum: lines of a wavelength in nm and a value, separated by a comma, a semicolon or spaces, with
-/// comments from # on and one line of headings; or what Argyll's spotread writes (CGATS, SPECTRAL_BANDS and so on), of
-/// which the first set of values counts, divided by SPECTRAL_NORM. \throws InputError naming file and line: wavelengths
-/// that do not grow, values below 0 or not finite, or no spectrum at all.
+/// Reads a spectrum: lines with a wavelength in nm and a value, separated by a comma, a semicolon or spaces, with #
+/// comments and one line of headings. Also reads the first set of values of CGATS files (Argyll's spotread), divided by
+/// SPECTRAL_NORM. \throws InputError naming file and line for decreasing wavelengths, values that are negative or not
+/// finite, or a missing spectrum.
 SampledSpectrum read_spectrum(const std::filesystem::path& file);
 
 /// The same of a text.
@@ -33,24 +33,24 @@ SampledSpectrum parse_spectrum(std::string_view text, const std::filesystem::pat
 /// An hour of a weather file.
 struct WeatherHour {
   Place place;
-  Instant middle;         ///< of the hour, UTC
+  Instant middle;         ///< middle of the hour, UTC
   SolarIrradiance solar;  ///< means over the hour
 };
 
-/// Reads one hour of an EnergyPlus weather file (EPW): the one that begins `hour` hours (0 to 23) after midnight, local
-/// standard time, of the first line with this month and day.
+/// Reads one hour of an EnergyPlus weather file (EPW): the hour that begins `hour` (0 to 23) in local standard time, in
+/// the first line with this month and day.
 /// \throws InputError naming the file and line.
 WeatherHour read_epw(const std::filesystem::path& file, int month, int day, int hour);
 
 /// The same from a text; `file` is for messages.
 WeatherHour parse_epw(const std::string& text, const std::string& file, const Instant& local_time);
 
-/// Sun and Perez sky of that hour, the sun where it stands in the middle of it. scene/daylight.h.
+/// Sun and Perez sky of that hour, with the sun at its position in the middle of the hour; see scene/daylight.h.
 Daylight daylight_of(const WeatherHour& weather, const Vector& up, const Vector& north, Eigen::Index bands);
 
 /// Reads a photometric file, IES LM-63 of 1986, 1991, 1995 or 2002: types A, B and C, TILT=NONE or INCLUDE, relative
-/// and absolute photometry, dimensions in feet or meters. The candela are multiplied by the file's multiplier, its
-/// ballast factor and its ballast-lamp factor. \throws InputError naming the file and line.
+/// and absolute photometry, dimensions in feet or meters. Candela values are multiplied by the candela multiplier, the
+/// ballast factor and the ballast-lamp factor of the file. \throws InputError naming the file and line.
 PhotometricWeb read_ies(const std::filesystem::path& file);
 
 /// The same from a text; `file` is for messages.

@@ -23,7 +23,7 @@
 namespace patchlight {
 namespace {
 
-// A text as a string of a TOML file; control characters become question marks.
+// Quotes a text for TOML; control characters become question marks.
 std::string toml_text(const std::string& text) {
   std::string result = "\"";
   for (const char letter : text) {
@@ -34,7 +34,7 @@ std::string toml_text(const std::string& text) {
   return result + "\"";
 }
 
-// A point as a list of a TOML file, "[1, 2.5, 0]", to a thousandth.
+// A point as a TOML list, e.g. "[1, 2.5, 0]", rounded to 0.001.
 std::string toml_text(const Point& point) {
   std::string text = "[";
   for (const double value : point)
@@ -43,9 +43,9 @@ std::string toml_text(const Point& point) {
 }
 
 constexpr std::size_t most_named = 12;  // rooms, in lists and with lamps
-constexpr double lowest_room = 1.8;     // meters: so much is free over a floor
+constexpr double lowest_room = 1.8;     // meters, least clear height above a floor
 
-// Those of 2 m^2 or more.
+// Floors of at least 2 m^2.
 std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
   std::erase_if(places, [](const NamedFloor& place) { return area_of(place.floor) < 2; });
   std::stable_sort(places.begin(), places.end(),
@@ -53,14 +53,14 @@ std::vector<NamedFloor> largest_first(std::vector<NamedFloor> places) {
   return places;
 }
 
-// The height of the scene's top along its upright axis.
+// The highest coordinate of the scene along its vertical axis.
 double top_of(const Scene& scene) {
   double top = -std::numeric_limits<double>::infinity();
   for (const Point& vertex : scene.vertices) top = std::max(top, vertex.dot(scene.up));
   return top;
 }
 
-// Has it a height above the floor that one can stand in? A space on a roof has not.
+// True if a part of the scene is above the floor, high enough to stand. Roof terraces fail.
 bool is_under_something(const Floor& floor, double top) {
   return !floor.outlines.empty() && floor.outlines[0][0].dot(floor.up) + lowest_room <= top;
 }
@@ -76,7 +76,7 @@ std::vector<NamedFloor> floors_of_rooms(const Scene& scene) {
   return largest_first(std::move(places));
 }
 
-// Groups with a name, whose floor has something of the scene high over it.
+// Named groups with a floor that has a part of the scene high above it.
 std::vector<NamedFloor> floors_of_groups(const Scene& scene) {
   std::vector<std::vector<PolygonIndex>> of_group(scene.groups.size());
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) of_group[scene.polygons[p].group].push_back(p);
@@ -131,7 +131,7 @@ std::string spectrum_text(const Spectrum& spectrum) {
   return values.find(',') == std::string::npos ? values : "[" + values + "]";
 }
 
-// Commented out: it states the values that hold without it.
+// Commented out, with the values that the model already has.
 std::string material_tables(const Scene& scene) {
   std::ostringstream text;
   for (const Material& material : scene.materials) {
@@ -147,7 +147,7 @@ std::string material_tables(const Scene& scene) {
          "# transmittance = 0.8\n# reflectance = 0\n\n";
 }
 
-// Over the middle of a floor, as high as is free at least.
+// A point over the middle of a floor, at the least clear height.
 std::optional<Point> place_over(const Floor& floor) {
   const SensorGroup grid = floor_grid(floor, lowest_room, {std::sqrt(area_of(floor)) / 10, 0});
   Point middle = Point::Zero();
@@ -158,7 +158,7 @@ std::optional<Point> place_over(const Floor& floor) {
   return nearest == grid.sensors.end() ? std::nullopt : std::optional(nearest->point);
 }
 
-// In each of the largest named rooms.
+// A lamp in each of the largest named rooms.
 NewLight lamps_in_rooms(const Scene& scene) {
   NewLight light{true, {}, {}};
   for (const NamedRoom& room : scene.rooms) light.rooms_without.push_back(room.name);
@@ -172,7 +172,7 @@ NewLight lamps_in_rooms(const Scene& scene) {
   return light;
 }
 
-// "# No lamp in: "store", "attic" and 3 more.", or nothing.
+// "# No lamp in: "store", "attic" and 3 more."; empty without rooms.
 std::string names_line(const std::string& what, const std::vector<std::string>& rooms) {
   if (rooms.empty()) return {};
   std::string list;
@@ -182,7 +182,7 @@ std::string names_line(const std::string& what, const std::vector<std::string>& 
   return "# " + what + ": " + list + ".\n";
 }
 
-// Commented out where no place for a lamp is known.
+// Commented out if no place for a lamp was found.
 std::string luminaire_table(const NewLight& light) {
   std::string positions;
   for (const Point& lamp : light.lamps) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
@@ -195,7 +195,7 @@ std::string luminaire_table(const NewLight& light) {
          (is_known ? positions : "[X, Y, Z]") + "]\n" + mark + "lumens = 3000\n\n";
 }
 
-// A sky as the only light is not commented out.
+// A sky that is the only light is active, otherwise it is commented out.
 std::string sky_tables(const Scene& scene, bool is_only_light) {
   const std::string mark = is_only_light ? "" : "# ";
   const std::string why = is_only_light ? "# The model has no lamp, so the sky lights it; the ground reflects 20 %.\n"
@@ -213,7 +213,7 @@ std::string light_tables(const Scene& scene, const NewLight& light) {
   return sky_tables(scene, !has_lamp(scene));
 }
 
-// Over every room, or over those that have a place for sensors.
+// All rooms, or those with a place for sensors.
 std::string rooms_text(const FloorGrid& grid) {
   if (grid.rooms.size() == 1) return toml_text(grid.rooms[0]);
   std::string list;
@@ -229,8 +229,8 @@ std::string sensor_tables(const Scene& scene, const NewPlaces& places) {
   if (!places.grid) text += "# No closed room was found. A sensor grid over a group of faces:\n";
   text += mark + "[[sensors]]\n" + mark + "name = " + toml_text(grid.name) + '\n' + mark +
           (grid.rooms.empty() ? "floor = " + toml_text(grid.group) : "room = " + rooms_text(grid)) + '\n' + mark +
-          "height = " + shortest(grid.height) + "      # metres above the floor\n" +
-          "# spacing = 0.5   # metres; default: EN 12464-1, by the size of the room\n" + mark +
+          "height = " + shortest(grid.height) + "      # meters above the floor\n" +
+          "# spacing = 0.5   # meters; default: EN 12464-1, by the size of the room\n" + mark +
           (grid.rooms.empty() ? "from_walls = 0.5\n\n" : "# from_walls = 0.5\n\n");
   return text;
 }
@@ -276,7 +276,7 @@ std::string new_scene_file(const Scene& scene, const NewLight& light, const NewP
                            const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
                            const std::filesystem::path& file) {
   std::ostringstream text;
-  text << "# A scene for patchlight. `patchlight help scene-file` lists all keys. Lengths are in metres.\n"
+  text << "# A scene for patchlight. `patchlight help scene-file` lists all keys. Lengths are in meters.\n"
        << "# patchlight check " << file.filename().string() << "\n# patchlight solve " << file.filename().string()
        << " -o result.vtp --json result.json --picture result.png\n\n"
        << "up = " << (std::abs(scene.up.y()) > 0.5 ? "\"y\"" : "\"z\"") << "\n\n";

@@ -12,39 +12,39 @@
 
 namespace patchlight {
 
-/// A floor with the name of its room or of its group of faces.
+/// A floor with the name of its room or group of faces.
 struct NamedFloor {
   std::string name;
   Floor floor;
-  double window_area = 0;  ///< of the room, m^2; 0 where it has no windows, or is not known as a room
+  double window_area = 0;  ///< of the room, m^2; 0 without windows, or if the floor belongs to no room
 };
 
-/// The floors of the rooms that the models name, else of groups of faces that no dark_solids() cover: those of 2 m^2 or
-/// more with some of the scene 1.8 m above them, the largest first.
+/// The floors of the named rooms, else of groups of faces outside dark_solids(). Floors have at least 2 m^2 and a part
+/// of the scene at least 1.8 m above them. The largest come first.
 std::vector<NamedFloor> named_floors(const Scene& scene);
 
-/// Light for models that have none.
+/// Light for models without any.
 struct NewLight {
-  bool is_sealed = false;                  ///< no daylight gets into the room: it needs lamps
-  std::vector<Point> lamps;                ///< places for them, meters
-  std::vector<std::string> rooms_without;  ///< names; empty where no room has a lamp of its own
+  bool is_sealed = false;                  ///< no daylight enters; the room needs lamps
+  std::vector<Point> lamps;                ///< positions, meters
+  std::vector<std::string> rooms_without;  ///< names; empty if no room has a lamp of its own
 };
 
-/// Where no daylight gets in, lamps in up to twelve of the rooms that the models name, else under the ceiling.
+/// Lamps for a model that no daylight enters: in up to twelve of the named rooms, else below the ceiling.
 NewLight new_light(const Scene& scene);
 
-/// The scene with that light, or with a sky where daylight gets in; one with light as it is.
+/// Adds that light, or a sky if daylight can enter. A scene with light stays unchanged.
 Scene with_new_light(Scene scene, const NewLight& light);
 
-/// Where sensors and cameras of a new scene file stand.
+/// Sensors and cameras of a new scene file.
 struct NewPlaces {
   std::optional<FloorGrid> grid;
   std::vector<std::string> rooms_without;  ///< sensors
   std::vector<Camera> cameras;
 };
 
-/// The text of a commented scene file for models that were read as `scene`: the models, what may be left out, glass as
-/// it was read, light, sensors and cameras. `file` is where the text will stand: models are named from its folder.
+/// The text of a commented scene file for models that were read as `scene`: models, parts that can be left out, glass,
+/// light, sensors and cameras. Paths of models are relative to the folder of `file`, the new scene file.
 std::string new_scene_file(const Scene& scene, const NewLight& light, const NewPlaces& places,
                            const std::vector<std::filesystem::path>& models, std::optional<double> metres_per_unit,
                            const std::filesystem::path& file);

@@ -21,7 +21,7 @@ void require_no(const TomlValue& table, const char* key, Projection projection) 
   refuse(*value, std::string("none with the projection '") + name_of(projection) + "'\nhint: leave it out");
 }
 
-// With the extent of its picture: an angle, or a height.
+// Adds the extent of the image: an angle, or a height.
 Camera with_projection(Camera camera, const TomlValue& table, double metres_per_unit) {
   using enum Projection;
   if (const TomlValue* const projection = find(table, "projection")) {

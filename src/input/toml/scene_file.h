@@ -15,32 +15,32 @@
 
 namespace patchlight {
 
-/// A model that a scene file names.
+/// A model of a scene file.
 struct ModelEntry {
   std::filesystem::path file;
   std::string where;                         ///< "room.toml:3", for messages
-  std::optional<double> metres_per_unit;     ///< of the model file; if not given, as it states, else 1
+  std::optional<double> metres_per_unit;     ///< unit of the model file; default: the unit that it states, else 1
   std::optional<Eigen::Affine3d> placement;  ///< meters to meters
-  FaceChoice choice;                         ///< what of it takes part
+  FaceChoice choice;                         ///< the faces to keep
 };
 
-/// A grid of sensors over a floor, or one over that of each of some rooms, which are known once the models are read.
+/// A grid of sensors over a floor, or over the floor of each room of a list. Rooms are known after the models are read.
 struct FloorGrid {
   std::string name;
-  std::string group;                 ///< a name of polygon groups, or a pattern with * and ?; empty: of rooms
-  std::vector<std::string> rooms;    ///< names of rooms, or patterns
+  std::string group;                 ///< a name of polygon groups, or a pattern with * and ?; empty: rooms
+  std::vector<std::string> rooms;    ///< names or patterns
   double height = 0;                 ///< meters above the floor
-  std::optional<double> spacing;     ///< meters; that of standard_grid() unless stated
-  std::optional<double> from_walls;  ///< meters: no sensor is nearer to the floor's rim; of standard_grid()
-  std::string file;                  ///< that asks for it
+  std::optional<double> spacing;     ///< meters; default: standard_grid()
+  std::optional<double> from_walls;  ///< meters, the least distance from the floor's boundary; default: standard_grid()
+  std::string file;                  ///< the scene file
   std::uint32_t line = 0;
 };
 
 /// The content of a scene file, in meters, before the models are read.
 struct SceneFile {
   std::string file;
-  std::vector<std::filesystem::path> inputs;  ///< it, and the files of lamps, weather, points and spectra it names
-  std::string sha256;                         ///< of it and of the files of lamps, weather and spectra it names
+  std::vector<std::filesystem::path> inputs;  ///< the file itself and its files of lamps, weather, points and spectra
+  std::string sha256;                         ///< SHA-256 of the same files without points
   std::vector<ModelEntry> models;
   std::optional<Vector> up;
   std::vector<MaterialSetting> settings;
@@ -53,9 +53,9 @@ struct SceneFile {
   std::optional<BandsAsked> bands;
 };
 
-/// Reads a scene file in TOML; its paths start from its folder. docs/reference/scene-file.md lists the keys. \throws
-/// InputError naming file, line and key, what was found and what was expected; also when a file does not lie in the
-/// folder `confine`, if there is one.
+/// Reads a scene file in TOML. Paths are relative to its folder. docs/reference/scene-file.md lists the keys.
+/// \throws InputError with file, line, key, found and expected value; also for a file outside the folder `confine` (if
+/// given).
 SceneFile read_scene_file(const std::filesystem::path& file, const std::filesystem::path& confine);
 
 }  // namespace patchlight

@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 enum class LuminaireKind { point, spot, ies, sphere };
 
-// The color of a light whose lumens are given: any multiple of it.
+// The relative color of a light with given lumens.
 Spectrum colour_of(const TomlValue& table) {
   const TomlValue* const value = find(table, "color");
   if (value == nullptr) return Spectrum::Ones(1);
@@ -28,14 +28,14 @@ Spectrum colour_of(const TomlValue& table) {
   return colour;
 }
 
-// The watts between 380 and 780 nm, such that the lumens of a light with this spectrum are right.
+// Watts between 380 and 780 nm that give the lumens of a light with this spectrum.
 Spectrum watts_by_wavelength(const TomlValue& table, const TomlFrame& frame) {
   const double watts = number(*find(table, "watts"), "one number of watts beside a spectrum");
   const Cells light = in_cells(*light_spectrum(*find(table, "spectrum"), frame), Beyond::zero);
   return Spectrum::Constant(1, watts * luminance_of_cells(light) / light.sum() / luminous_efficacy);
 }
 
-// Flux per band in W: the watts as given, or with 179 lm/W as many lumens as given.
+// Flux per band in W: the given watts, or the given lumens at 179 lm/W.
 Spectrum flux_of(const TomlValue& table, const TomlFrame& frame) {
   const std::string key = one_of(table, {"lumens", "watts"});
   if (key == "watts") {
@@ -70,7 +70,7 @@ SphericalLamp sphere_of(const TomlValue& table, const TomlFrame& frame) {
   return {radius, flux_of(table, frame) / (4 * pi * radius * radius)};
 }
 
-// As the file says, or dimmed or brightened to the lumens given.
+// The photometric web of the file, scaled to the given lumens, if any.
 WebLight web_of(const TomlValue& table, const TomlFrame& frame) {
   const auto web =
       std::make_shared<const PhotometricWeb>(read_ies(named_file(required(table, "file", "an IES file"), frame)));
@@ -132,7 +132,7 @@ int whole(const TomlValue& value, int low, int high) {
   return static_cast<int>(value.number);
 }
 
-// A value in W/m^2 per band, or in lx.
+// An irradiance in W/m^2 per band, or in lx.
 Spectrum irradiance_of(const TomlValue& table) {
   const std::string key = one_of(table, {"irradiance", "illuminance"});
   if (key == "irradiance") return spectrum(*find(table, key));
@@ -264,7 +264,7 @@ LightEntries lights_of(const TomlValue& root, const TomlFrame& frame) {
     allow_keys(*ground, {"reflectance"});
     lights.ground_reflectance = within(required(*ground, "reflectance", "0 to 1"), 0, 1, "0 to 1");
   }
-  // Measured irradiances become visible light by their luminous efficacy.
+  // Measured irradiances are converted to visible light with their luminous efficacy.
   if (weather || (lights.sky && lights.sky->measured)) lights.photometric = true;
   return lights;
 }

@@ -21,10 +21,10 @@ Vector axis_of(const TomlValue& value) {
 Matrix rotation_of(const TomlValue& table) {
   allow_keys(table, {"axis", "degrees"});
   const Vector axis = axis_of(required(table, "axis", "an axis 'x', 'y', 'z' or [x, y, z]"));
-  return turned_about(axis, number(required(table, "degrees", "an angle, anticlockwise seen from the axis' tip")));
+  return turned_about(axis, number(required(table, "degrees", "an angle, counter-clockwise seen from the axis' tip")));
 }
 
-// One rotation, or several in the order in which they are done.
+// One rotation, or several in order of application.
 Matrix rotations_of(const TomlValue& value) {
   if (value.kind != TomlValue::Kind::list) return rotation_of(value);
   Matrix all = Matrix::Identity();
@@ -39,7 +39,7 @@ Matrix scale_of(const TomlValue& value) {
   return factors.asDiagonal();
 }
 
-// Turns the upright axis of the model file to that of the scene: a quarter turn around x, or none.
+// Rotates the vertical axis of the model to that of the scene: a quarter turn around x, or the identity.
 Matrix upturned(const Vector& from, const Vector& to) {
   if (from == to) return Matrix::Identity();
   return turned_about(Vector::UnitX(), from == Vector::UnitY() ? 90 : -90);
@@ -60,7 +60,7 @@ Eigen::Affine3d matrix_of(const TomlValue& value, double metres_per_unit) {
   return Eigen::Affine3d(matrix);
 }
 
-// Up axis, then either the matrix, or scale, rotation and translation.
+// Vertical axis, then either the matrix, or scale, rotation and translation.
 std::optional<Eigen::Affine3d> placement_of(const TomlValue& table, const TomlFrame& frame) {
   const TomlValue* const scale = find(table, "scale");
   const TomlValue* const rotate = find(table, "rotate");
@@ -96,7 +96,7 @@ ModelEntry model_of(const TomlValue& table, const TomlFrame& frame) {
   return model;
 }
 
-// The setting with the value of a material's key, in linear RGB and by wavelength.
+// Sets the value of a material key, in linear RGB and by wavelength.
 MaterialSetting with_value(MaterialSetting setting, const TomlValue& value, const TomlFrame& frame) {
   if (setting.quantity == Quantity::light_spectrum) {
     setting.sampled = light_spectrum(value, frame);

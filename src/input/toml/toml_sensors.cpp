@@ -29,7 +29,7 @@ std::uint32_t line_of(const std::string& where) {
                               "\nhint: a larger spacing");
 }
 
-// The two edges from a corner, in meters, and the spacing: a grid that is not too fine.
+// Refuses grids that are too fine. `edges` start at one corner, in meters.
 void require_sensible(const std::string& where, const std::array<Vector, 2>& edges, double spacing) {
   const double cells = cells_along(edges[0].norm(), spacing) * cells_along(edges[1].norm(), spacing);
   if (!(cells <= most_sensors)) refuse_spacing(where, std::min(cells, 1e18));
@@ -68,17 +68,16 @@ SensorGroup rectangle_of(const TomlValue& table, const TomlFrame& frame) {
   return rectangle_grid(corner, edges, length);
 }
 
-// Keys that go with another one only.
+// Refuses keys that require another key.
 void require_absent(const TomlValue& table, const std::vector<std::string>& keys, const std::string& kind) {
   for (const std::string& key : keys) {
     const TomlValue* const value = find(table, key);
     if (value == nullptr) continue;
-    throw InputError(value->where,
-                     value->name + " says nothing about sensors given by '" + kind + "'\nhint: leave it out");
+    throw InputError(value->where, value->name + " does not apply to sensors with '" + kind + "'\nhint: leave it out");
   }
 }
 
-// Over floors of groups, or of rooms.
+// A grid over floors of groups, or of rooms.
 FloorGrid floor_grid_of(const TomlValue& table, const TomlFrame& frame, const std::string& name,
                         const std::string& kind) {
   require_absent(table, {"edges"}, kind);
@@ -144,19 +143,19 @@ SensorGroup without(const SensorGroup& group, const Predicate& is_left_out) {
   return rest;
 }
 
-// The area of a floor beyond a strip along its rim, by 100 x 100 cells over the rectangle around it, m^2.
+// The area of a floor without a strip along its boundary, m^2, sampled by 100 x 100 cells of its bounding rectangle.
 double area_beyond_strip(const Floor& floor, double from_walls) {
   const auto [corner, x, y] = rectangle_over(floor, 0);
   return area_of(floor_grid(floor, 0, {std::max(x.norm(), y.norm()) / 100, from_walls}));
 }
 
-// The share of the floor beyond the strip that the remaining cells cover.
+// The fraction of the floor without the strip that the remaining cells cover.
 double share_of(const SensorGroup& rest, const Floor& floor, double from_walls) {
   const double whole = area_beyond_strip(floor, from_walls);
   return whole > 0 ? std::min(1.0, area_of(rest) / whole) : 1;
 }
 
-// With a note on a grid that covers a part of its floor.
+// Adds a note on a grid that covers only a part of its floor.
 void note_share(LeftOut& notes, const FloorGrid& grid, const std::string& floor, double share) {
   if (share >= 0.9) return;
   notes.add("sensors '" + grid.name +
@@ -220,7 +219,7 @@ GridInAir grid_over_room(const NamedRoom& room, const FloorGrid& grid, const std
   const Floor floor = floor_of_room(room.faces, up);
   if (floor.outlines.empty()) return {};
   GridInAir over = grid_over(floor, grid, solids);
-  // A closed room without light is a dark solid itself. Its sensors read 0.
+  // A closed room without light is itself a dark solid. Its sensors read 0.
   if (over.group.sensors.empty()) over = grid_over(floor, grid, {});
   const double area = area_of(over.group);
   over.group = in_room(std::move(over.group), room);
@@ -239,7 +238,7 @@ double height_of(const NamedRoom& room, const Vector& up) {
   return highest - lowest;
 }
 
-// The rooms that are meant, each with a grid of its own.
+// The selected rooms, each with its own grid.
 FloorSensors over_rooms(const Scene& scene, const FloorGrid& grid) {
   require_known_rooms(scene, grid);
   const std::vector<Solid> solids = dark_solids(scene);

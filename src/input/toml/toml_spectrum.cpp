@@ -23,7 +23,7 @@ bool names_file(const TomlValue& value) {
   return value.kind == TomlValue::Kind::text && !value.text.empty() && !is_name_of_light(value);
 }
 
-// Messages name the line that asks for a missing file; for a fault in the file they name its own line.
+// A missing file is reported at the line that names it, a fault in the file at its own line.
 SampledSpectrum read_named(const TomlValue& value, const TomlFrame& frame) {
   const std::filesystem::path file = named_file(value, frame);
   std::error_code error;
@@ -44,7 +44,7 @@ std::shared_ptr<const SampledSpectrum> with_light(std::shared_ptr<const SampledS
 
 std::shared_ptr<const SampledSpectrum> daylight_of(const TomlValue& value) {
   return daylight_spectrum(
-      within(value, coolest_daylight, hottest_daylight, "the colour temperature of daylight, 4000 to 25000 K"));
+      within(value, coolest_daylight, hottest_daylight, "the color temperature of daylight, 4000 to 25000 K"));
 }
 
 std::shared_ptr<const SampledSpectrum> of_temperature(const TomlValue& table) {
@@ -56,7 +56,7 @@ std::shared_ptr<const SampledSpectrum> of_temperature(const TomlValue& table) {
 }
 
 std::vector<double> edges_of(const TomlValue& value) {
-  const std::string expected = "two wavelengths or more, growing, from 380 to 780 nm";
+  const std::string expected = "two or more increasing wavelengths from 380 to 780 nm";
   if (value.kind != TomlValue::Kind::list || value.items.size() < 2) refuse(value, expected);
   std::vector<double> edges = numbers(value, value.items.size(), expected);
   const bool grow = std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
@@ -87,8 +87,8 @@ std::shared_ptr<const SampledSpectrum> sampled_share(const TomlValue& value, con
 std::shared_ptr<const SampledSpectrum> sampled_exitance(const TomlValue& value, const TomlFrame& frame) {
   if (!names_file(value))
     refuse(value,
-           "a number, [R, G, B], or a file of wavelengths and values per nm; how light is spread whose strength is "
-           "known stands beside it, as spectrum = {kelvin = 2700}");
+           "a number, [R, G, B], or a file of wavelengths and values per nm; for a light of known strength give "
+           "the spectrum separately, e.g. spectrum = {kelvin = 2700}");
   return with_light(shared(read_named(value, frame)), value);
 }
 

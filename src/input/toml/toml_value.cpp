@@ -15,7 +15,7 @@
 namespace patchlight {
 namespace {
 
-// The rest behind the string or comment that the text begins with; the whole text when it begins with neither.
+// The text after a leading string or comment; the whole text without one.
 std::string_view after_string(std::string_view text) {
   if (text[0] == '#') return text.substr(std::min(text.find('\n'), text.size()));
   if (text[0] != '"' && text[0] != '\'') return text;
@@ -28,7 +28,7 @@ std::string_view after_string(std::string_view text) {
   return text.substr(std::min(k + end.size(), text.size()));
 }
 
-// The levels that a text goes down to, found without going down: brackets, and dots of keys.
+// The nesting depth of a text, computed without recursion from brackets and dots of keys.
 class Levels {
  public:
   void take(char letter) {
@@ -93,7 +93,7 @@ TomlValue::Kind kind_of(const toml::node& node) {
   return node.is_table() ? TomlValue::Kind::table : TomlValue::Kind::other;
 }
 
-// Messages are one line.
+// Messages have one line.
 std::string on_one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
@@ -125,7 +125,7 @@ TomlTime time_of(const toml::date_time& given) {
   return time;
 }
 
-// The value with all that is in it. Values of tables in a list are named like those of a table.
+// Converts a node recursively. Values of tables in a list are named like those of a table.
 TomlValue value_of(const toml::node& node, const std::string& file, const std::string& name) {
   TomlValue value;
   value.kind = kind_of(node);

@@ -1,4 +1,4 @@
-"""patchlight: how light bounces between the surfaces of a room, and how far the answer can be trusted.
+"""patchlight: lighting simulation for rooms and buildings, with an error bar on every value.
 
     import patchlight as pl
     scene = pl.read("room.obj", unit="cm")
@@ -6,8 +6,8 @@
     solved = pl.solve(scene, patches=2000)
     solved.illuminance, solved.report()["energy_balance"], solved.write_page("room.html")
 
-Keywords are the options of the command-line tool with _ for -: patchlight solve --help, or help(pl.solve), has them with
-their units. Lengths are metres but in read(), whose `unit` is that of the model.
+Keywords are the options of the command-line tool with _ for -; see patchlight solve --help or help(pl.solve). Lengths are
+in meters, except in read(), whose `unit` is that of the model.
 """
 import warnings
 
@@ -24,8 +24,8 @@ __all__ = ["InputError", "Material", "OutputError", "Scene", "Simulation", "Solu
 
 
 def read(*models, **options):
-    """Reads one model, or several that together are one scene. Options say how: unit, up, set, only, leave_out, detail,
-    keep_faces, sky, sun, ground, weather, points (a file of sensors)."""
+    """Reads one model, or several as one scene. Options: unit, up, set, only, leave_out, detail, keep_faces, sky, sun,
+    ground, weather, points (a file of sensors)."""
     refuse_unused("read()", options, OF_WRITING)
     scene = _core.read(arguments_of(models, options))
     for problem in scene.problems:
@@ -35,13 +35,13 @@ def read(*models, **options):
 
 
 def check(scene):
-    """What is wrong with a scene, worst first; raises InputError for what cannot be solved."""
+    """The problems of a scene, worst first. Raises InputError for scenes that cannot be solved."""
     scene.check()
     return scene.problems
 
 
 def plan(scene, **options):
-    """What solve() would do, and why: effects with their reasons, expected patches, seconds and bytes."""
+    """A dry run of solve(): effects with their reasons, expected patches, seconds and bytes."""
     import json
 
     refuse_unused("plan()", options, OF_WRITING)
@@ -49,7 +49,7 @@ def plan(scene, **options):
 
 
 def _arguments(scene, options):
-    """Those of a scene that is there, with the command line that says most of what is done."""
+    """The arguments for a scene that was read, with an equivalent command line as far as there is one."""
     reading, _ = parted(options)
     if reading:
         names = ", ".join(sorted(reading))
@@ -60,7 +60,7 @@ def _arguments(scene, options):
 
 
 def _progress(show):
-    """A function of stage and share: a bar of tqdm where it is there and wanted, else what the user gives, else None."""
+    """A function of stage and fraction, and its bar: a tqdm bar for True if installed, else the given function or None."""
     if show is not True:
         return (show if callable(show) else None), None
     try:
@@ -78,7 +78,7 @@ def _progress(show):
 
 
 def _read_first(scene, options):
-    """A scene, which is read where a file is named, and the options that are left."""
+    """The scene, read first if a file is given, and the remaining options."""
     if isinstance(scene, Scene):
         return scene, options
     reading, others = parted(options)
@@ -95,15 +95,15 @@ def _run(work, scene, options, progress, *more):
 
 
 def solve(scene, own=None, progress=None, **options):
-    """Solves a scene, or a model by its file's name.
+    """Solves a scene, or a model given by its file name.
 
-    own: a function in place of the solver; it takes apply (H = F B for arrays of patches x bands), E, rho and H_direct, and
-    returns the irradiance H. progress: True for a bar of tqdm, or a function of stage and share.
+    own: a function that replaces the solver. It takes apply (H = F B for arrays of patches x bands), E, rho and H_direct,
+    and returns the irradiance H. progress: True for a tqdm bar, or a function of stage and fraction.
 
-    A solution that has not converged, or is less accurate than accuracy= asks for, is a warning of Python's
-    warnings.warn(); solved.converged and solved.notes have the same to read.
+    If the solution did not converge or misses accuracy=, Python's warnings.warn() reports it; see also solved.converged
+    and solved.notes.
 
-    Options, as those of the tool:
+    Options of the tool:
 
     """
     refuse_unused("solve()", options, OF_WRITING)
@@ -120,8 +120,8 @@ def solve(scene, own=None, progress=None, **options):
 
 
 def transport(scene, progress=None, **options):
-    """Form factors between the patches of a scene, closed, kept in memory: apply(), operator, form_factors(), solve() by
-    any of patchlight.solvers. Options as of solve(), but for those of its solver and its goal."""
+    """Form factors between the patches of a scene with closure, in memory: apply(), operator, form_factors(), and solve()
+    with any of patchlight.solvers. Options as for solve(), except those of solver and accuracy."""
     refuse_unused("transport()", options, {**OF_WRITING, **OF_SOLVING, **OF_GOALS})
     return _run(_core.transport, *_read_first(scene, options), progress)
 

@@ -5,7 +5,7 @@ from patchlight import _core
 
 
 def words_of(command, models, options):
-    """The words of a command line. True gives a flag, False and None give nothing, a list repeats its option."""
+    """The words of a command line. True gives a flag, False and None nothing; a list repeats its option."""
     words = ["patchlight", command, *map(str, models)]
     for name, value in options.items():
         option = "--" + name.rstrip("_").replace("_", "-")
@@ -21,16 +21,16 @@ def words_of(command, models, options):
     return words
 
 
-# Options whose one value has commas in it.
+# Options with a single value that contains commas.
 TRIPLES = {"up", "size"}
 
 
-# Options that say how a model is read and lit: read() takes them.
+# Options of read(): reading and lighting a model.
 OF_READING = {"format", "unit", "confine", "up", "set", "only", "exclude", "leave_out", "simplify", "detail", "no_merge", "keep_faces", "maintenance_factor", "bands",
               "color_error", "sky", "sun", "ground", "weather", "points"}
 
 
-# What these ask for is a method here: hint for each.
+# Python has a method instead of each of these options.
 OF_WRITING = {
     **dict.fromkeys(("o", "output", "ambient_occlusion"), "solved.write(FILE)"),
     "html": "solved.write_page(FILE)",
@@ -42,13 +42,13 @@ OF_WRITING = {
                     "the tool patchlight"),
 }
 
-# A transport has no solver until its method solve() is called, and no goal.
+# A transport has no solver until its method solve() is called, and no target accuracy.
 OF_SOLVING = dict.fromkeys(("solver", "tolerance", "max_iterations", "relaxation", "max_rows"), "transport.solve(NAME, ...)")
 OF_GOALS = dict.fromkeys(("accuracy", "time_limit", "time", "focus", "interest", "no_refine", "keep_mesh", "error_bars", "no_error_bars"), "pl.solve(...)")
 
 
 def refuse_unused(call, options, unused):
-    """Raises InputError for options that a call would not use: `unused` has their names, and what has them instead."""
+    """Raises InputError for options that a call does not use. `unused` maps their names to the call that uses them."""
     for name in options:
         instead = unused.get(name.rstrip("_"))
         if instead is not None:
@@ -56,24 +56,24 @@ def refuse_unused(call, options, unused):
 
 
 def parted(options):
-    """Those of reading, and the others."""
+    """The reading options, and the others."""
     reading = {name: value for name, value in options.items() if name.rstrip("_") in OF_READING}
     return reading, {name: value for name, value in options.items() if name not in reading}
 
 
 def command_of(models, options):
-    """The command line that does the same, as far as one can."""
+    """The equivalent command line, as far as there is one."""
     return shlex.join(words_of("solve", models, options))
 
 
 def arguments_of(models, options):
-    """The options of patchlight solve, understood or refused as there."""
-    # Something has to be written there; here it is returned.
+    """The arguments of patchlight solve, parsed by its rules."""
+    # The tool requires an output; nothing is written here.
     return _core.parse(words_of("solve", models, options) + ["--json", "unwritten.json"])
 
 
 def picture_arguments_of(options):
-    """Those of a picture."""
+    """The arguments of an image."""
     options = dict(options)
     camera = options.pop("camera", None)
     words = words_of("solve", ["scene"], options) + ["--picture", "unwritten.png"]

@@ -1,9 +1,9 @@
-"""What a scene shows of itself."""
+"""Materials, changes, copies and text of a scene."""
 from patchlight import _core
 
 
 class Materials(list):
-    """The materials of a scene, by their places or their names."""
+    """The materials of a scene, by index or name."""
 
     def __getitem__(self, key):
         if not isinstance(key, str):
@@ -25,13 +25,13 @@ def states(scene):
 
 
 def remember(scene, models, options):
-    """What a scene was read with, and its materials then."""
+    """Records the files and options of a scene, and its initial materials."""
     scene._models, scene._options, scene._as_read = models, options, states(scene)
     return scene
 
 
 def changes(scene):
-    """What was changed of a scene's materials after it was read, a sentence for each property."""
+    """Changes to materials after reading, a sentence for each property."""
 
     def text(value):
         return ", ".join(repr(float(one)).removesuffix(".0") for one in value) if isinstance(value, list) else str(value)
@@ -41,7 +41,7 @@ def changes(scene):
 
 
 def copied(self):
-    """Another scene, with materials of its own."""
+    """A copy of the scene with its own materials."""
     other = _copy(self)
     other._models, other._options, other._as_read = self._models, self._options, self._as_read
     return other
@@ -55,5 +55,5 @@ def described(self):
 _copy = _core.Scene.copy
 _core.Scene.copy = copied
 _listed = _core.Scene.materials.fget
-_core.Scene.materials = property(lambda self: Materials(_listed(self)), doc="By their places or their names.")
+_core.Scene.materials = property(lambda self: Materials(_listed(self)), doc="The materials, by index or name.")
 _core.Scene.__repr__ = described

@@ -1,4 +1,4 @@
-"""What is seen of a solved scene: report, page and pictures."""
+"""Views of a solved scene: report, page and images."""
 import html
 import json
 import warnings
@@ -15,23 +15,23 @@ def report(self):
 
 
 def write_page(self, file):
-    """Writes the page for browsers, as `patchlight solve --html`."""
+    """Writes the HTML page, like `patchlight solve --html`."""
     with open(file, "wb") as stream:
         stream.write(self.page())
 
 
 def picture(self, **options):
-    """A picture: "srgb" (rows x columns x 3, 8 bits), "radiance" in W/(m^2 sr), "exposure".
+    """An image: "srgb" (rows x columns x 3, 8 bits), "radiance" in W/(m^2 sr), "exposure".
 
-    Options are those of the tool: camera=((x, y, z), (x, y, z), degrees), view, quality, size="WIDTHxHEIGHT",
+    Options of the tool: camera=((x, y, z), (x, y, z), degrees), view, quality, size="WIDTHxHEIGHT",
     false_color="luminance".
     """
     return self._picture(picture_arguments_of(options))
 
 
 def cells(self):
-    """The patches as VTK, meshio and pyvista take them: points (metres), connectivity and offsets of triangles and
-    quadrilaterals; patch i has the corners connectivity[offsets[i]:offsets[i + 1]]."""
+    """The patches for VTK, meshio and pyvista: points (meters), connectivity and offsets of triangles and quadrilaterals.
+    Patch i has the corners connectivity[offsets[i]:offsets[i + 1]]."""
     corners = self.corners
     counts = numpy.where(corners[:, 2] == corners[:, 3], 3, 4)
     kept = numpy.arange(4)[None, :] < counts[:, None]
@@ -39,7 +39,7 @@ def cells(self):
 
 
 def shown_in_notebook(self):
-    """The page in a frame of its own."""
+    """The page in its own frame."""
     page = html.escape(self.page().decode("utf-8"), quote=True)
     return f'<iframe srcdoc="{page}" sandbox="allow-scripts" width="100%" height="700" style="border: 0" title="The solved scene"></iframe>'
 
@@ -52,7 +52,7 @@ _sensors = _core.Simulation.sensors
 
 
 def sensors(self):
-    """Irradiance and illuminance of the scene's sensors with standard errors; "warnings" are warned of as well."""
+    """Irradiance and illuminance of the scene's sensors with standard errors. Also issues the texts of "warnings"."""
     read = _sensors(self)
     for text in read["warnings"]:
         warnings.warn(text, stacklevel=2)

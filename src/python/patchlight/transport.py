@@ -1,4 +1,4 @@
-"""Form factors as an operator of scipy, and what an adjoint solution tells."""
+"""Form factors as a scipy operator, and sensitivities by adjoint solutions."""
 import numpy
 
 from patchlight import _core
@@ -22,7 +22,7 @@ def operator_of(transport):
 
 
 def sensitivities(transport, weights, tolerance=1e-10):
-    """How a mean irradiance Q = sum_i weights_i H_i depends on materials, by one adjoint solution.
+    """Derivatives of a mean irradiance Q = sum_i weights_i H_i by materials, from one adjoint solution.
 
     weights: a number for each patch; area / area.sum() over the patches of a floor gives its mean irradiance. Returns Q
     in W/m^2 per band and, per material and band, its derivatives by reflectance ("reflectance", W/m^2) and by exitance
@@ -31,7 +31,7 @@ def sensitivities(transport, weights, tolerance=1e-10):
     area = transport.area[:, None]
     weights = numpy.asarray(weights, dtype=float).reshape(-1, 1)
     lamps = numpy.broadcast_to(weights / area, transport.exitance.shape)
-    # Weights may have either sign, which the solver's bounds do not mind.
+    # Weights of either sign are valid for the bounds of the solver.
     adjoint = transport.solve("cg", tolerance=tolerance, exitance=lamps).radiosity
     solution = transport.solve("cg", tolerance=tolerance)
     return {"value": (weights * solution.irradiance).sum(axis=0),
@@ -39,9 +39,9 @@ def sensitivities(transport, weights, tolerance=1e-10):
 
 
 def sensor_sensitivities(transport, tolerance=1e-10):
-    """The same of what each sensor of the scene gets from patches, H_s = sum_i g_i B_i, by one adjoint solution for each.
+    """The same for the irradiance of each sensor from patches, H_s = sum_i g_i B_i, with one adjoint solution per sensor.
 
-    Returns a list with an entry for each sensor, in the scene's order. With g the sensor's factors the adjoint
+    Returns a list with an entry for each sensor, in scene order. With the factors g of the sensor, the adjoint
     b = rho o g / A + rho o F b gives dH_s = A o (g / A + F b) . (dE + drho o H).
     """
     area, rho = transport.area[:, None], transport.reflectance
@@ -56,8 +56,8 @@ def sensor_sensitivities(transport, tolerance=1e-10):
 
 
 def by_material(transport, by_radiosity, irradiance):
-    """Derivatives by the exitance and the reflectance of materials (rows) per band, from those by what each patch sends
-    out: dQ = sum_i y_i (dE_i + drho_i H_i)."""
+    """Derivatives by the exitance and reflectance of materials (rows) per band, from those by the radiosity of each patch:
+    dQ = sum_i y_i (dE_i + drho_i H_i)."""
     count = int(transport.material.max()) + 1
 
     def summed(values):

@@ -138,7 +138,7 @@ TEST_F(ColladaPictures, ThatAreMissingAreNamedAndGrey) {
   EXPECT_FALSE(scene.materials[0].texture);
   EXPECT_TRUE((scene.materials[0].reflectance == .5).all());
   EXPECT_TRUE(any_contains(scene.diagnostics, "none.png of material 'paint' cannot be read; is there such a file?"));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "it is grey instead, reflectance 0.5"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "it is gray instead, reflectance 0.5"));
 }
 
 TEST_F(ColladaPictures, ThatAreDamagedAreNamedAndGrey) {
@@ -147,7 +147,7 @@ TEST_F(ColladaPictures, ThatAreDamagedAreNamedAndGrey) {
   EXPECT_FALSE(scene.materials[0].texture);
   EXPECT_EQ(scene.polygons[0].texture_map, no_texture_map);
   EXPECT_TRUE((scene.materials[0].reflectance == .5).all());
-  EXPECT_TRUE(any_contains(scene.diagnostics, "half.png of material 'paint' is cut off; it is grey instead"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "half.png of material 'paint' is cut off; it is gray instead"));
 }
 
 TEST_F(ColladaPictures, OfOneColourAreTheMaterial) {
@@ -190,10 +190,10 @@ TEST_F(ColladaPictures, OfPanesCountByTheirMean) {
   const Scene scene = read_scene(square("0123", "four.png", "", "", clear));
   EXPECT_FALSE(scene.materials[0].texture);
   EXPECT_TRUE((scene.materials[0].stated_pane->matt_reflectance == .5).all());
-  EXPECT_TRUE(any_contains(scene.diagnostics, "textures of panes are replaced by their mean colour: paint"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "textures of panes are replaced by their mean color: paint"));
   const Scene without = read_scene(square("0123", "none.png", "", "", clear));
-  EXPECT_TRUE(any_contains(without.diagnostics, "it is grey instead, reflectance 0.5"));
-  EXPECT_FALSE(any_contains(without.diagnostics, "replaced by their mean colour"));
+  EXPECT_TRUE(any_contains(without.diagnostics, "it is gray instead, reflectance 0.5"));
+  EXPECT_FALSE(any_contains(without.diagnostics, "replaced by their mean color"));
 }
 
 }  // namespace

@@ -273,7 +273,8 @@ TEST_F(Formats, GltfTexturesAreReplacedByTheirMean) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)" + std::string(image) + "\"}]}";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.4, 0.2, 0.1), 1e-12)) << scene.materials[0].reflectance;
-  EXPECT_TRUE(any_contains(scene.diagnostics, "no good place in their picture, whose mean counts: "));
+  EXPECT_TRUE(
+      any_contains(scene.diagnostics, "without valid texture coordinates, which use the mean of their picture: "));
 }
 
 TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
@@ -285,7 +286,7 @@ TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "absent.png"}]})";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.8, 0.4, 0.2), 1e-12));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "could not be read are ignored, the colour factor is used alone: wall"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "unreadable textures are ignored; only the color factor is used: wall"));
 }
 
 TEST_F(Formats, UnknownExtensionsAreRefusedByName) {

@@ -167,7 +167,7 @@ TEST_F(Gbxml, WhatCannotBeReadIsRefusedWithItsLine) {
            {"<gbXML><Campus><Surface><PlanarGeometry><PolyLoop>\n\n<CartesianPoint><Coordinate>1</Coordinate>"
             "</CartesianPoint></PolyLoop></PlanarGeometry></Surface></Campus></gbXML>",
             "house.xml:3: a CartesianPoint has fewer"},
-           {"<gbXML>\n<Campus>\n</gbXML>", "house.xml:3: is no good XML"},
+           {"<gbXML>\n<Campus>\n</gbXML>", "house.xml:3: is not valid XML"},
            {"<html/>", "the first element is <html>; expected <scene>"}}) {
     EXPECT_NE(refusal(write("house.xml", text)).find(message), std::string::npos)
         << refusal(write("house.xml", text)) << "\n"

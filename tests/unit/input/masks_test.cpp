@@ -74,7 +74,7 @@ const std::string blended = R"("alphaMode":"BLEND",)";
 TEST_F(GltfMasks, HalfOpaqueLetsHalfOfTheLightThrough) {
   const Scene scene = read({255, 0, 255, 0}, masked);
   expect_holes(scene.materials[0], .5, rgb(.25, .25, 0));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "no error bar holds where its holes are: leaves (0.5)"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "error bars do not include the effect of hole positions: leaves (0.5)"));
   EXPECT_FALSE(any_contains(scene.diagnostics, "is ignored"));
   EXPECT_TRUE(std::none_of(scene.unsimulated.begin(), scene.unsimulated.end(), [](const UnsimulatedMaterials& found) {
     return found.property == UnsimulatedProperty::glass;
@@ -167,7 +167,7 @@ TEST_F(ObjMasks, AlphaOfTheColoursOwnPictureWeighsThem) {
   write("four.png", four_pixels({255, 0, 255, 0}));
   const Scene scene = read("Kd .8 .8 .8\nmap_Kd four.png\nmap_d four.png\n");
   expect_holes(scene.materials[0], .5, .8 * rgb(.25, .25, 0));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "no error bar holds where its holes are: leaves (0.5)"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "error bars do not include the effect of hole positions: leaves (0.5)"));
   EXPECT_FALSE(any_contains(scene.diagnostics, "ignored"));
 }
 

@@ -71,7 +71,7 @@ TEST(ParseMaterialSetting, RefusalsTellQuantitiesWithTheirUnits) {
   }
   says("lamp.exitance=800lm", "'800lm' is not a finite number; expected W/m^2 without the unit");
   says("lamp.radiance=10cd", "expected W/(m^2 sr) without the unit");
-  says("wall.reflectance=half", "expected a share from 0 to 1, or in percent");
+  says("wall.reflectance=half", "expected a fraction from 0 to 1, or a percentage");
 }
 
 // Phi = 179 lm/W * A * M for one exitance M in all bands.

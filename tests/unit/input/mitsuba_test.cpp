@@ -251,7 +251,8 @@ TEST_F(Mitsuba, WhatCannotBeReadIsRefusedWithItsLine) {
             ":3: <matrix> has 2 numbers"},
            {"<shape type=\"cube\"><transform name=\"to_world\"><scale x=\"a\"/></transform></shape>",
             ":3: <scale>: found 'a'"},
-           {"<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>", ":3: '$r' names what no <default>"},
+           {"<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>",
+            ":3: '$r' names a variable without a <default>"},
            {"<shape type=\"sphere\"><float name=\"radius\" value=\"-1\"/></shape>", ":3: the sphere has a radius"},
            {"<shape type=\"cube\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1 2\"/></bsdf></shape>",
             ":3: <rgb>: found '1 2'"},
@@ -260,7 +261,7 @@ TEST_F(Mitsuba, WhatCannotBeReadIsRefusedWithItsLine) {
            {"<shape type=\"instance\" id=\"a\"><ref id=\"b\"/></shape><shape id=\"b\" type=\"shapegroup\"><shape "
             "type=\"instance\"><ref id=\"b\"/></shape></shape>",
             ":3: instances stand in each other"},
-           {"<shape", ":3: is no good XML"}}) {
+           {"<shape", ":3: is not valid XML"}}) {
     EXPECT_NE(refusal(file_of(text)).find(message), std::string::npos) << refusal(file_of(text)) << "\n" << message;
   }
 }

@@ -176,7 +176,7 @@ TEST(PictureFormats, ThatAreCutOffAreNamed) {
     for (const std::size_t missing : {std::size_t{2}, whole.size() / 3, whole.size() - 20}) {
       const std::string fault = decoded_picture(whole.substr(0, whole.size() - missing), 1000).fault;
       const bool is_hdr = whole.starts_with("#?");
-      EXPECT_TRUE(fault.starts_with(is_hdr ? "has runs of the old kind, or is cut off" : "is cut off"))
+      EXPECT_TRUE(fault.starts_with(is_hdr ? "has old-style runs, or is cut off" : "is cut off"))
           << whole.substr(0, 10) << " without " << missing << ": " << fault;
     }
   }
@@ -253,14 +253,14 @@ TEST(PictureFormats, AlphaOfBmpCountsWhereItIsOne) {
 TEST(PictureFormats, RunsOfHdrOfTheOldKindAreNamed) {
   const std::string bytes =
       "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 9\n" + std::string("\x80\x40\x20\x80\1\1\1\x11", 8);
-  EXPECT_EQ(decoded_picture(bytes, 100).fault, "has runs of the old kind, or is cut off");
+  EXPECT_EQ(decoded_picture(bytes, 100).fault, "has old-style runs, or is cut off");
 }
 
 // A run of no length would be read for ever where the file ends.
 TEST(PictureFormats, RunsOfHdrThatNeverEndAreCutOff) {
   const std::string endless = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n" + std::string("\2\2\0\x09", 4);
-  EXPECT_EQ(decoded_picture(endless, 10).fault, "has runs of the old kind, or is cut off");
-  EXPECT_EQ(decoded_picture(endless + std::string(50, '\0'), 10).fault, "has runs of the old kind, or is cut off");
+  EXPECT_EQ(decoded_picture(endless, 10).fault, "has old-style runs, or is cut off");
+  EXPECT_EQ(decoded_picture(endless + std::string(50, '\0'), 10).fault, "has old-style runs, or is cut off");
 }
 
 }  // namespace

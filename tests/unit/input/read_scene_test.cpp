@@ -179,7 +179,8 @@ TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
   EXPECT_LT((scene.materials[1].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((scene.materials[2].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_EQ(scene.materials[3].reflectance[0], .4);
-  EXPECT_TRUE(any_contains(scene.diagnostics, "no good place in their picture, whose mean counts: 3 (first at "));
+  EXPECT_TRUE(any_contains(scene.diagnostics,
+                           "without valid texture coordinates, which use the mean of their picture: 3 (first at "));
   EXPECT_TRUE(
       any_contains(scene.diagnostics, "bad.png of material 'bad' (map_Kd, line 11 of its material file) is cut off"));
   EXPECT_TRUE(any_contains(scene.diagnostics, "Kd is used instead: bad"));

@@ -88,12 +88,12 @@ TEST_F(SpectraOfScenes, AreRefusedWithTheLineThatNamesThem) {
       {"[[material]]\nname = \"lamp\"\nspectrum = \"dark.csv\"\n", "expected a spectrum with light between"},
       {"[[material]]\nname = \"lamp\"\nspectrum = {kelvin = 10}\n", "500 to 100000 K"},
       {"[[material]]\nname = \"lamp\"\nspectrum = {daylight = 3000}\n", "4000 to 25000 K"},
-      {"[[material]]\nname = \"lamp\"\nradiance = {kelvin = 3000}\n", "as spectrum = {kelvin = 2700}"},
+      {"[[material]]\nname = \"lamp\"\nradiance = {kelvin = 3000}\n", "e.g. spectrum = {kelvin = 2700}"},
       {"[[material]]\nname = \"lamp\"\nexitance = \"blue.csv\"\nspectrum = \"A\"\n",
        "expected one of exitance, spectrum"},
       {"[spectra]\nbands = 0\n", "scene.toml:10: spectra.bands: found 0"},
       {"[spectra]\nbands = \"many\"\n", "expected one of 'rgb', 'auto'"},
-      {"[spectra]\nedges_nm = [500, 400]\n", "growing, from 380 to 780 nm"},
+      {"[spectra]\nedges_nm = [500, 400]\n", "increasing wavelengths from 380 to 780 nm"},
       {"[spectra]\nbands = 3\nedges_nm = [400, 500]\n", "expected one of bands, edges_nm"},
       {"[sky]\nkind = \"uniform\"\nilluminance = 1\ncolor_temperature = 2700\n",
        "scene.toml:12: sky.color_temperature"}};
@@ -151,7 +151,7 @@ TEST_F(SpectraOfScenes, OfSolvedScenesTakeNewLight) {
   const Scene orange = changed(scene, {"lamp.radiance=20,10,5"});
   expect_spread(orange.materials[m].exitance, lamp("[20, 10, 5]").materials[m].exitance,
                 std::numbers::pi * luminance(rgb(20, 10, 5)), scene.bands);
-  EXPECT_TRUE(any_contains(orange.diagnostics, "new light is spread over the bands"));
+  EXPECT_TRUE(any_contains(orange.diagnostics, "the spectrum of new light"));
   // A number makes it brighter.
   expect_spread(changed(orange, {"lamp.exitance=7"}).materials[m].exitance, orange.materials[m].exitance,
                 luminance(rgb(7, 7, 7)), scene.bands);

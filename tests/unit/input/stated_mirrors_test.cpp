@@ -84,7 +84,7 @@ TEST_F(StatedMirrors, WhatIsRoughOrHasNoReflectionIsGloss) {
 TEST_F(StatedMirrors, ReflectNoMoreThanTheyDoNotScatter) {
   const Scene scene = of_mtl("Kd 0.5 0.3 0\nKs 0.9 0.5 1.5\nillum 3\n");
   expect_mirror(scene.materials[1], rgb(0.5, 0.5, 1), rgb(0.5, 0.3, 0));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to what they do not reflect diffusely: mirror"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to 1 - diffuse reflectance: mirror"));
   EXPECT_FALSE(any_contains(of_mtl("Kd 0.9 0.9 0.9\nKs 0.1 0.1 0.1\nillum 3\n").diagnostics, "lowered"));
   expect_mirror(mirror_of(polished, settings({"mirror.reflectance=0.2"})), rgb(1 - 0.2, 1 - 0.2, 0.7),
                 rgb(0.2, 0.2, 0.2));
@@ -114,7 +114,7 @@ TEST_F(StatedMirrors, OtherMetalsOfGltfAreMatt) {
     expect_matt(scene.materials[0]);
     EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.9, 0.6, 0.3)).all());
     EXPECT_EQ(scene.unsimulated.size(), 1U);
-    EXPECT_TRUE(any_contains(scene.diagnostics, "matt ones of their base colour: wall"));
+    EXPECT_TRUE(any_contains(scene.diagnostics, "matt surfaces of their base color: wall"));
   }
 }
 

@@ -102,7 +102,8 @@ TEST_F(StatedPanes, WhereMostMaterialsLetAllThroughTheyAreOpaque) {
   for (const char* all : {"d 0\n", "Tr 1\n"}) {
     const Scene scene = of_mtl(all, all);
     for (const Material& material : scene.materials) expect_opaque(material);
-    EXPECT_TRUE(any_contains(scene.diagnostics, "taken for opaque: wall, glass; read.settings wall.transmittance=1"));
+    EXPECT_TRUE(
+        any_contains(scene.diagnostics, "these become opaque: wall, glass; read.settings wall.transmittance=1"));
   }
   // One of two is believed.
   expect_transmittance(of_mtl("d 0\n").materials[1], rgb(1, 1, 1));
@@ -152,8 +153,7 @@ TEST_F(StatedPanes, GltfAlphaIsWhatIsCovered) {
   for (const char* mode : {R"(, "alphaMode": "MASK")", R"(, "alphaMode": "OPAQUE")", ""})
     expect_opaque(of_gltf(base_color + std::string(mode)).materials[0]);
   const Scene masked = of_gltf(std::string(base_color) + R"(, "alphaMode": "MASK")");
-  EXPECT_TRUE(
-      any_contains(masked.diagnostics, "masks that leave nothing of a surface are ignored: it is opaque: wall"));
+  EXPECT_TRUE(any_contains(masked.diagnostics, "masks that remove a whole surface are ignored: it is opaque: wall"));
   ASSERT_EQ(masked.unsimulated.size(), 2U) << "metal, mask";
 }
 
@@ -218,7 +218,7 @@ TEST_F(StatedPanes, ReflectNoMoreThanTheyDoNotLetThrough) {
   const Scene scene = of_mtl("d 0.3\nTf 1 0.5 0.1\n", "Kd 0.5 0.5 0.5\n", settings({"*.reflectance=0.6"}));
   EXPECT_TRUE((scene.materials[1].reflectance == (1 - scene.materials[1].transmittance).min(0.6)).all());
   EXPECT_TRUE((scene.materials[0].reflectance == 0.6).all());
-  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to what they do not let through: glass"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to 1 - transmittance: glass"));
   EXPECT_FALSE(any_contains(of_mtl("d 0.3\n").diagnostics, "lowered"));
   const Material restored = glass_of("d 0.3\n", settings({"glass.reflectance=0.6", "glass.transmittance=0"}));
   EXPECT_TRUE((restored.reflectance == 0.6).all());
