@@ -78,8 +78,8 @@ TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
   EXPECT_EQ(more_at_point(as_point(40)).value(), 4);
 }
 
-// A strip faces a close lamp of 25 patches, which are chosen by their flux. A dark plate between them meets the strip.
-// The strip's points see the lamp almost as its middle does, except for the plate and the lamp's edges. So the estimate
+// A strip faces a close lamp of 25 patches, which are chosen by their flux. A dark plate between them faces the strip.
+// Except for the plate and the lamp's edges, the strip's points see the lamp almost as its middle does. So the estimate
 // from two rays and two shadow rays scatters little, though each ray may go to any patch of the lamp.
 TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0, 1)}),
@@ -110,7 +110,7 @@ TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
     ++points;
   }
   EXPECT_GT(points, 20);
-  // The ends of the strip get a tenth less. Shadow rays alone give 0.6.
+  // The ends of the strip get a tenth less. With shadow rays alone the root mean square is 0.6.
   EXPECT_LT(std::sqrt(squares / points), 0.3);
 }
 

@@ -425,8 +425,8 @@ TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
 
 // The quarters of a square of 1 m, 3 m below a lamp to the side. The floor is so much larger that each has one sample.
 // With its own sample, the error of each quarter is the variation of the irradiance within it. With a common sample all
-// errors are nearly the same, and their differences are a quarter or less. The squares are a sixteenth, and below a
-// quarter within the scatter of 64 seeds.
+// errors are nearly equal, and their differences are a quarter or less. So their squares are a sixteenth. The limit of
+// a quarter allows for the scatter of 64 seeds.
 TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
   Scene scene = with_quad(only_floor(-5), {Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)});
   scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};

@@ -51,7 +51,7 @@ TEST(LitArea, OfAHoleBetweenFourShadowsIsTheHole) {
 TEST(LitArea, OfPanesIsTheProductOfTheirTransmittances) {
   const Spectrum half = Spectrum::Constant(1, 0.5);
   const Spectrum tenth = Spectrum::Constant(1, 0.1);
-  // One pane covers everything, another one a quarter, and both and a wall cover another quarter.
+  // One pane covers everything, another one a quarter. A pane and a wall cover another quarter.
   EXPECT_NEAR(lit({{square, &half},
                    {rectangle(0, 0.5, 0, 0.5), &tenth},
                    {rectangle(0.5, 1, 0, 0.5), nullptr},
