@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// All patches of a box of 1 x 2 x 3 m as lamps, each of another exitance; they differ in area.
+// All patches of a box of 1 x 2 x 3 m are lamps. They differ in exitance and area.
 struct Lamps {
   PatchMesh mesh;
   std::vector<PatchIndex> all;
@@ -27,8 +27,8 @@ Lamps all_of_a_box() {
   return lamps;
 }
 
-// at() inverts the distribution: of n evenly spaced numbers of [0, 1), a lamp with the probability q gets n q within
-// one, and what is left of the number rises from 0 to 1 within each lamp.
+// at() inverts the distribution. For n evenly spaced numbers of [0, 1), n q to within one choose a lamp of probability
+// q. The remainder of the number rises from 0 to 1 within each lamp.
 void expect_chosen_as_told(const ChoiceOfLamps& choice, const std::vector<PatchIndex>& lamps) {
   constexpr int count = 100'000;
   std::vector<int> chosen(lamps.size(), 0);
@@ -67,9 +67,9 @@ TEST(ChoiceOfLamps, ByFluxGoesWithAreaTimesExitance) {
   EXPECT_NEAR(choice.probability_of(last) / choice.probability_of(0), flux_last / flux_first, 1e-12);
 }
 
-// A floor and a ceiling of 1 x 1 m, 2 m apart, and a wall of 1 x 2 m between them, one patch each. By hand, with r^2
-// from middle to middle plus the area: the ceiling has 4 + 1 and both cosines 2 / sqrt(5); the wall .25 + 1 + 2 and
-// cosines of 1 / sqrt(3.25) and .5 / sqrt(3.25).
+// A floor and a ceiling of 1 x 1 m, 2 m apart, and a wall of 1 x 2 m between them, with one patch each. The squared
+// distance of middles plus the area is 4 + 1 for the ceiling and 0.25 + 1 + 2 for the wall. Both cosines of the ceiling
+// are 2 / sqrt(5). Those of the wall are 1 / sqrt(3.25) and 0.5 / sqrt(3.25).
 TEST(ChoiceOfLamps, GoesWithWhatIsSentWithNothingInTheWay) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});

@@ -24,8 +24,8 @@ Request with_bars(std::size_t patches) {
   return request;
 }
 
-// In a furnace B = 1 however large the patches, and closure leaves nothing of what samples have wrong in the row sums:
-// the bars have to know. What is left are the closure's and the solver's tolerance and the storage as floats.
+// In a furnace, B = 1 for patches of any size, and closure removes all sampling errors from the row sums. The bars must
+// reflect that. The rest is the tolerances of the closure and the solver and the storage as floats.
 TEST(ErrorBars, VanishInAFurnace) {
   Request request = with_bars(400);
   request.solver.relative_error = 1e-9;
@@ -37,7 +37,7 @@ TEST(ErrorBars, VanishInAFurnace) {
   EXPECT_LT(simulation.error_bars->display.maxCoeff(), 1e-5);
 }
 
-// They add up in quadrature, patch by patch and as a whole.
+// The parts add up in quadrature, for each patch and as a whole.
 TEST(ErrorBars, AddUpInQuadrature) {
   const Simulation simulation = simulate(test::furnished_room(0.5), with_bars(600));
   const ErrorBars& bars = *simulation.error_bars;
@@ -47,12 +47,12 @@ TEST(ErrorBars, AddUpInQuadrature) {
   EXPECT_GT(bars.form_factor.maxCoeff(), 0);
   ASSERT_EQ(simulation.accuracy.size(), 1U);
   const AccuracyStep& step = simulation.accuracy[0];
-  // One band: the worst one is the same for all.
+  // With one band, the worst band is the same for all.
   EXPECT_NEAR(step.total, std::hypot(step.mesh, step.form_factor, step.solver), 1e-12);
   EXPECT_GT(step.display, step.mesh);
 }
 
-// ||rho bar||_A / ||B - E||_A, by hand: A = 1, 3; rho = .5, 1; bar = 2, 1; B - E = 3, 4.
+// ||rho bar||_A / ||B - E||_A by hand: A = 1, 3; rho = 0.5, 1; bar = 2, 1; B - E = 3, 4.
 TEST(RelativeBar, IsRelativeToTheReflectedLight) {
   const RadiosityProblem problem{{Eigen::Array2d(0.5, 1)}, Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
   Solution solution;
@@ -63,7 +63,7 @@ TEST(RelativeBar, IsRelativeToTheReflectedLight) {
   EXPECT_EQ(relative_bar(bar, problem, solution, Eigen::Vector2d(0, 0)), 0);
 }
 
-// An error that nothing bounds is infinite, also where one of the patches reflects nothing of it.
+// An error without a bound is infinite, even if one of the patches reflects none of it.
 TEST(RelativeBar, IsInfiniteWhereNoBoundIsKnown) {
   const RadiosityProblem problem{{Eigen::Array2d(0.5, 0)}, Eigen::Array2d(7, 0), Eigen::Vector2d(1, 3)};
   Solution solution;
@@ -73,8 +73,8 @@ TEST(RelativeBar, IsInfiniteWhereNoBoundIsKnown) {
   EXPECT_TRUE(std::isinf(relative_bar(bar, problem, solution, Eigen::Vector2d(1, 1))));
 }
 
-// Of two independent values, each a standard deviation sigma off, the difference has sqrt(2) sigma; where nothing
-// reflects, that is all.
+// The difference of two independent values with standard deviation sigma has sqrt(2) sigma. There is no other error
+// where nothing reflects.
 TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
   const Scene scene = test::cube_room(0, 1);
   const Simulation simulation = simulate(scene, with_bars(100));
@@ -86,8 +86,9 @@ TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
   EXPECT_LT((bars - form_factor_scale * 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
 }
 
-// Two patches send to a black third one; of patches of 1 m^2, F = S. What one of them errs arrives as rho F of it; of
-// what both err, .3 and .1, signs are drawn: the root mean square lies between the difference and the sum.
+// Two patches send light to a black third one. F = S for patches of 1 m^2. An error of one patch arrives as rho F times
+// the error. The signs of the common errors 0.3 and 0.1 are random: their root mean square lies between the difference
+// and the sum.
 TEST(ErrorsOfLights, AreFollowedToWhatTheLitPatchesLight) {
   Scene scene = test::empty_scene({test::grey(0.5)});
   for (const double x : {0.0, 2.0, 4.0})
@@ -114,8 +115,8 @@ TEST(ErrorsOfLights, AreFollowedToWhatTheLitPatchesLight) {
   EXPECT_LT(of_both(2), 0.4);
 }
 
-// Theorem: sources' shares of the noise sum up to what all receivers expect of it. With independent errors sigma_ij,
-// sum_i w_i E (D B)_i^2 = sum_i w_i sum_j sigma_ij^2 B_j^2, and sigma is symmetric.
+// Theorem: the sources' shares of the noise add up to the noise that all receivers expect. With independent errors
+// sigma_ij, sum_i w_i E (D B)_i^2 = sum_i w_i sum_j sigma_ij^2 B_j^2, and sigma is symmetric.
 TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
   const Scene scene = test::furnished_room(0.5);
   const Simulation simulation = simulate(scene, with_bars(300));
@@ -140,11 +141,11 @@ TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
   EXPECT_NEAR(noise.sum() / sum, 1, 1e-12);
 }
 
-// All is linear in the light.
+// Everything is linear in the light.
 TEST(ErrorBars, ScaleWithTheLight) {
   const Simulation one = simulate(test::furnished_room(0.5, 10), with_bars(400));
   const Simulation bright = simulate(test::furnished_room(0.5, 80), with_bars(400));
-  // Eight is a power of two: the same bits.
+  // Eight is a power of two, so the bits are the same.
   EXPECT_TRUE((bright.error_bars->mesh == 8 * one.error_bars->mesh).all());
   EXPECT_TRUE((bright.error_bars->form_factor == 8 * one.error_bars->form_factor).all());
   EXPECT_EQ(bright.accuracy[0].total, one.accuracy[0].total);

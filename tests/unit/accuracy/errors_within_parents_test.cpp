@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// Parents face each other in pairs, closely: each patch sees little but the one opposite, and something of all others.
+// Parents face each other closely in pairs. Each patch sees mainly the opposite one, and a little of all others.
 RayTransport pairs_of_near_faces(const NestedMesh& mesh) {
   const PatchIndex size = mesh.patches.size();
   RayRows rows;
@@ -45,9 +45,9 @@ struct OfParents : TransportOperator {
   const Eigen::VectorXd& area;
 };
 
-// Theorem: with F without errors it is F (B_h - B_2h) by Richardson's extrapolation, both solutions by a direct solver,
-// also where light goes to and fro between patches so often that what differs within a parent would add up to eight
-// times as much. What an error is followed by is solved to 5 %.
+// Theorem: if F has no errors, the result is F (B_h - B_2h) by Richardson's extrapolation. A direct solver computes
+// both solutions. Light goes back and forth between patches so often that the differences within a parent would add up
+// to eight times as much. The propagation of an error is solved to 5 %.
 TEST(ErrorsWithinParents, AreTheDifferenceFromTheSolutionOnParents) {
   const Scene scene = cube_room(0.5, 0);
   const NestedMesh mesh = nest(tessellate(scene, kept_sides(scene, Sides::front), 0.5));

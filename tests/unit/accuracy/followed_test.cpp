@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// Counts the bands that are applied.
+// Counts the bands that the operator is applied to.
 class Counting : public TransportOperator {
  public:
   explicit Counting(const TransportOperator& transport) : transport_(transport) {}
@@ -27,7 +27,7 @@ class Counting : public TransportOperator {
   const TransportOperator& transport_;
 };
 
-// Three paints whose reflectances change smoothly from band to band, up to `highest`.
+// Three paints whose reflectances vary smoothly from band to band, up to `highest`.
 RadiosityProblem painted(const Room& room, Eigen::Index bands, double highest) {
   RadiosityProblem problem{{Field(room.problem.area.size(), bands)}, {}, room.problem.area};
   for (Eigen::Index i = 0; i < problem.area.size(); ++i) {
@@ -40,7 +40,7 @@ RadiosityProblem painted(const Room& room, Eigen::Index bands, double highest) {
   return problem;
 }
 
-// Errors of either sign, of a light whose spectrum is smooth.
+// Errors of either sign of a light with a smooth spectrum.
 Field errors(Eigen::Index patches, Eigen::Index bands) {
   Field irradiance(patches, bands);
   for (Eigen::Index i = 0; i < patches; ++i)
@@ -51,7 +51,7 @@ Field errors(Eigen::Index patches, Eigen::Index bands) {
   return irradiance;
 }
 
-// How far e is from e = irradiance + F R e, of what the reflections add, in the worst band.
+// Distance of e from e = irradiance + F R e, relative to the reflected part, in the worst band.
 double worst_error(const Room& room, const RadiosityProblem& problem, const Field& irradiance, const Field& found) {
   const RadiosityProblem of_sources{problem.scattering, problem.scattering.reflect(irradiance), problem.area};
   const Field exact = direct_solution(*room.transport, of_sources);
@@ -59,8 +59,8 @@ double worst_error(const Room& room, const RadiosityProblem& problem, const Fiel
   return (area_norm(off, problem.area) / area_norm(exact - of_sources.exitance, problem.area)).maxCoeff();
 }
 
-// Theorem: y = E + R F y of every band is found to 5 % of what reflections add, by ||r||_A / (1 - kappa), whether it
-// was solved or is a combination of others.
+// Theorem: y = E + R F y of every band is found to 5 % of the reflected part, by ||r||_A / (1 - kappa). This holds for
+// solved bands and for combinations of others.
 TEST(Followed, IsRightInEveryBand) {
   const Room room = made_up(120, 0.5);
   for (const double highest : {0.5, 0.9}) {
@@ -71,7 +71,7 @@ TEST(Followed, IsRightInEveryBand) {
   }
 }
 
-// Bands that no others tell are solved.
+// Bands that do not follow from others are solved.
 TEST(Followed, IsRightInBandsThatDifferAtRandom) {
   const Room room = made_up(120, 0.5);
   RadiosityProblem problem = painted(room, 30, 0.8);
@@ -89,7 +89,7 @@ TEST(Followed, IsRightInBandsThatDifferAtRandom) {
   EXPECT_LE(worst_error(room, problem, irradiance, with_all), 0.05 * 1.05);
 }
 
-// Five times the bands of the same spectra take no more products with the matrix, but for some.
+// Five times the bands of the same spectra take only a few more products with the matrix.
 TEST(Followed, DoesNotCostInProportionToTheBands) {
   const Room room = made_up(120, 0.5);
   const auto applied = [&](Eigen::Index bands) {

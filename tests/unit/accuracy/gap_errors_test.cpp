@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-// Two squares of 1 m^2, one patch each, that look at each other from a distance.
+// Two squares of 1 m^2, one patch each, that face each other at a distance.
 PatchMesh two_squares(double distance) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
@@ -19,7 +19,7 @@ PatchMesh two_squares(double distance) {
   return tessellate(scene, kept_sides(scene, Sides::front), 2);
 }
 
-// Half of the rays of the first square meet the other one as hits, and a share of all of them as an entry.
+// Half of the rays of the first square meet the other one as hits, and a fraction of all rays as an entry.
 RayTransport transport_with(float entry) {
   RayRows rows;
   rows.first_hit = {0, 1, 1};
@@ -40,7 +40,7 @@ double error_of_first(double distance, float entry, int cuts = 0) {
   return errors(0, 0);
 }
 
-// H / 2 times the share of near faces beyond .35.
+// H / 2 times the fraction of near faces beyond 0.35.
 TEST(GapErrors, GrowWithTheShareOfNearFacesThatRaysMeet) {
   EXPECT_NEAR(error_of_first(0.01, 0.48F), 1.5 * (0.98 - 0.35) / 0.65, 1e-6);
   EXPECT_NEAR(error_of_first(0.59, 0), 1.5 * (0.5 - 0.35) / 0.65, 1e-6);
@@ -48,7 +48,7 @@ TEST(GapErrors, GrowWithTheShareOfNearFacesThatRaysMeet) {
 
 TEST(GapErrors, AreNoneOfFacesThatAreNotNear) { EXPECT_EQ(error_of_first(0.61, 0.48F), 0); }
 
-// Three cuts make edges of an eighth: .6 of that is .075.
+// Three cuts leave edges of an eighth: 0.6 of that is 0.075.
 TEST(GapErrors, ThatCutsDoNotMendAreThoseOfFacesWhichStayNear) {
   EXPECT_EQ(error_of_first(0.076, 0.48F, 3), 0);
   EXPECT_EQ(error_of_first(0.074, 0.48F, 3), error_of_first(0.074, 0.48F));

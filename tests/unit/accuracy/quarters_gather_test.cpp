@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-// What is gathered in a room in which all surfaces send 1 W/m^2.
+// The gathered light in a room in which all surfaces send 1 W/m^2.
 struct Gathered {
   PatchMesh mesh;
   GatheredQuarters rays;
@@ -48,7 +48,7 @@ Scene board_over_half_a_floor() {
   return scene;
 }
 
-// The part of a patch that lies under the board is not seen from afar.
+// The part of a patch under the board is not visible from afar.
 TEST(QuartersGather, IsOpenWhereNothingIsNear) {
   const auto [mesh, rays] = gathered(board_over_half_a_floor(), 0.2, 64);
   int free = 0;
@@ -60,7 +60,7 @@ TEST(QuartersGather, IsOpenWhereNothingIsNear) {
         EXPECT_LT(rays.open[q], 0.1) << mesh.centroid[i].transpose();
         ++under;
       } else if (std::abs(mesh.centroid[i].x() - 1) < 0.3 && std::abs(mesh.centroid[i].y() - 2) < 0.8) {
-        // The wall at 1 m is met by less than half of the rays.
+        // Fewer than half of the rays meet the wall at 1 m.
         EXPECT_GT(rays.open[q], 0.5) << mesh.centroid[i].transpose();
         ++free;
       }
@@ -70,7 +70,7 @@ TEST(QuartersGather, IsOpenWhereNothingIsNear) {
   EXPECT_GT(under, 100);
 }
 
-// The byte that says how much more is reflected at a point keeps it to half of its steps.
+// One byte stores the additional reflection at a point, to half of its step.
 TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
   EXPECT_FALSE(more_at_point(seen_as_quarter));
   EXPECT_FALSE(more_at_point(seen_as_whole));
@@ -78,9 +78,9 @@ TEST(QuartersGather, KeepsWhatIsReflectedAtPoints) {
   EXPECT_EQ(more_at_point(as_point(40)).value(), 4);
 }
 
-// A strip over a lamp of 25 patches, chosen by their flux, close before it, and a dark plate between, which meets the
-// strip. Its points see the lamp as its middle does, but for the plate and the lamp's edges: what two rays and two
-// shadow rays say of them scatters little, though each of these goes to any patch of the lamp.
+// A strip faces a close lamp of 25 patches, which are chosen by their flux. A dark plate between them faces the strip.
+// Except for the plate and the lamp's edges, the strip's points see the lamp almost as its middle does. So the estimate
+// from two rays and two shadow rays scatters little, though each ray may go to any patch of the lamp.
 TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0, 1)}),
                           {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
@@ -110,11 +110,11 @@ TEST(QuartersGather, TellsTheLightAtPointsBeforeManyLamps) {
     ++points;
   }
   EXPECT_GT(points, 20);
-  // Towards the ends of the strip there is a tenth less. With shadow rays alone it was .6.
+  // The ends of the strip get a tenth less. With shadow rays alone the root mean square is 0.6.
   EXPECT_LT(std::sqrt(squares / points), 0.3);
 }
 
-// A ray counts as from afar where it comes from a patch that is open, and the one it meets is not near.
+// A ray counts as far if its own patch is open and the patch that it meets is not near.
 TEST(QuartersGather, SeesPatchesFromAfarOnlyFromWhereIsOpen) {
   const auto [mesh, rays] = gathered(board_over_half_a_floor(), 0.2, 16);
   int from_afar = 0;
@@ -123,7 +123,7 @@ TEST(QuartersGather, SeesPatchesFromAfarOnlyFromWhereIsOpen) {
     ++from_afar;
     const auto patch = static_cast<PatchIndex>(ray / (4 * static_cast<std::size_t>(rays.rays)));
     EXPECT_GE(rays.open.segment<4>(4 * Eigen::Index{patch}).sum(), 4 * 0.5 - 1e-12);
-    // Eight edges are 1.6 m or less: an edge is no shorter than the root of half the area.
+    // Eight edges are at most 1.6 m long: an edge is no shorter than the root of half the area.
     const double distance = (mesh.centroid[rays.met[ray] / 4] - mesh.centroid[patch]).norm();
     EXPECT_GT(distance, 8 * std::sqrt(mesh.area[rays.met[ray] / 4]) - 2 * 0.3);
   }

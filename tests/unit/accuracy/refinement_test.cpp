@@ -15,7 +15,7 @@ namespace {
 
 const Eigen::VectorXd effects = (Eigen::VectorXd(9) << 3, 0.5, 8, 1, 0, 2.5, 0.2, 4, 1).finished();
 
-// What is left of an effect when its parent is cut: the size of the patches halves.
+// Remaining fraction of an effect after its parent is cut: the size of the patches halves.
 const double left_by_a_cut = std::pow(0.5, 2 * mesh_order);
 
 double left_after(const std::vector<std::uint8_t>& marks) {
@@ -25,7 +25,7 @@ double left_after(const std::vector<std::uint8_t>& marks) {
   return left;
 }
 
-// The least number of parents, by trying all sets.
+// The smallest number of parents, found by trying all sets.
 int least_cuts(double wanted) {
   int least = std::numeric_limits<int>::max();
   for (unsigned set = 0; set < 1U << effects.size(); ++set) {
@@ -53,7 +53,8 @@ TEST(ParentsToCut, AreNoneWhenNothingHasToFall) {
   }
 }
 
-// One cut of everything lets the error fall by 2^mesh_order at most: beyond, the fewest with nine tenths of the effect.
+// A cut of all parents reduces the error by 2^mesh_order at most. Beyond that, the fewest with nine tenths of the
+// effect are cut.
 TEST(ParentsToCut, HaveNineTenthsWhereCuttingAllWouldNotDo) {
   const std::vector<std::uint8_t> marks = parents_to_cut(effects, {.factor = 100});
   const double all = effects.sum();
@@ -69,7 +70,7 @@ TEST(ParentsToCut, AreTheMostEffectiveOnesWhenThereIsALimit) {
   EXPECT_EQ(parents_to_cut(effects, {.factor = 100, .most = 0}), std::vector<std::uint8_t>(9, 0));
 }
 
-// The error would fall enough with the first alone; a parent without an effect is not cut to make up the number.
+// The first parent alone reduces the error enough. A parent without an effect is not cut to reach the number.
 TEST(ParentsToCut, AreAtLeastSoMany) {
   EXPECT_EQ(parents_to_cut(effects, {.factor = 1.01, .least = 3}),
             (std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 1, 0}));
@@ -77,9 +78,9 @@ TEST(ParentsToCut, AreAtLeastSoMany) {
             (std::vector<std::uint8_t>{1, 1, 1, 1, 0, 1, 1, 1, 1}));
 }
 
-// What a cut leaves of noise is more than of a mesh error: it takes more cuts.
+// A cut leaves more of noise than of a mesh error, so noise takes more cuts.
 TEST(ParentsToCut, DependOnWhatACutLeaves) {
-  // Four fifths of the largest effect are a little more than what has to fall.
+  // Four fifths of the largest effect slightly exceed the required reduction.
   const double factor = 0.999 * std::sqrt(1 / (1 - 0.8 * 8 / effects.sum()));
   EXPECT_EQ(parents_to_cut(effects, {.factor = factor, .left = 0.2}),
             (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 0, 0, 0, 0}));
@@ -87,9 +88,9 @@ TEST(ParentsToCut, DependOnWhatACutLeaves) {
             (std::vector<std::uint8_t>{0, 0, 1, 0, 0, 0, 0, 1, 0}));
 }
 
-// <interest, B>_A = <psi, E>_A for the solution of B = E + R F B: the adjoint equation's reason to be. psi is solved to
-// 5 %: ||d(R psi)||_A <= 0.05 ||R (psi - interest)||_A, and psi is off by F of that, of no larger norm. What is of
-// interest reflects a third of what the others do, so that psi = interest + R F psi would show.
+// <interest, B>_A = <psi, E>_A holds for the solution of B = E + R F B and of the adjoint equation. psi is solved to 5
+// %: ||d(R psi)||_A <= 0.05 ||R (psi - interest)||_A. The error of psi is F times that, of no larger norm. The patches
+// of interest reflect a third as much as the others, so psi = interest + R F psi would fail.
 TEST(Importance, IsReciprocal) {
   constexpr PatchIndex size = 60;
   test::Room room = test::made_up(size, 0.9);
@@ -113,7 +114,7 @@ TEST(Importance, IsReciprocal) {
       0.06 * area_norm(problem.scattering.reflectance.colwise() * (psi - interest).array(), problem.area)[0];
   const double tolerance = off * area_norm(problem.exitance, problem.area)[0];
   EXPECT_NEAR(by_importance, seen, tolerance);
-  // What is reflected is many times the tolerance.
+  // The reflected part is many times the tolerance.
   EXPECT_GT(seen - (A * interest.array() * E).sum(), 5 * tolerance);
 }
 
@@ -122,7 +123,7 @@ TEST(Importance, IsInterestWhereNothingReflects) {
   Eigen::VectorXd interest = Eigen::VectorXd::Zero(20);
   interest[3] = 1;
   interest[7] = 1;
-  // Patches see those of interest directly: psi = interest + F R psi, and R = 0.
+  // Patches see the patches of interest directly: psi = interest + F R psi, and R = 0.
   EXPECT_EQ(importance(*room.transport, room.problem, interest), interest);
 }
 

@@ -11,7 +11,7 @@ constexpr Eigen::Index bands = 12;
 
 Eigen::VectorXd areas() { return Eigen::VectorXd::LinSpaced(patches, 0.5, 2); }
 
-// Two kinds of light, whose spectra are of very different strength from band to band, and `more` of a third.
+// Two kinds of light, whose strengths differ much from band to band, and `more` of a third.
 Field of_two_lights(double more) {
   Field field(patches, bands);
   for (Eigen::Index i = 0; i < patches; ++i) {
@@ -29,7 +29,7 @@ Eigen::ArrayXd norms(const Field& field) {
   return (field.square().colwise() * areas().array()).colwise().sum().sqrt().transpose();
 }
 
-// A field of two degrees of freedom is spanned by two of its bands, dark bands by the same.
+// Two bands span a field of two degrees of freedom. They also span dark bands.
 TEST(SpanningBands, AreAsManyAsThereAreDegreesOfFreedom) {
   const Field field = of_two_lights(0);
   const SpanningBands spanning = spanning_bands(field, areas(), 1e-6);
@@ -39,7 +39,7 @@ TEST(SpanningBands, AreAsManyAsThereAreDegreesOfFreedom) {
   EXPECT_TRUE((norms(all - field) <= 1e-6 * norms(field)).all());
 }
 
-// What is left out of a band is below the tolerance of its norm, and more bands are taken where they have to.
+// The omitted part of a band is below the tolerance of its norm. Smaller tolerances take more bands.
 TEST(SpanningBands, TellEveryBandToTheTolerance) {
   const Field field = of_two_lights(1e-2);
   std::size_t before = 0;

@@ -28,7 +28,7 @@ Request coarse(bool close = true) {
   return request;
 }
 
-// A room of 59 m^2 with a box of 4.12 m^2 in it that shines: closed, as every ray meets a patch.
+// A closed room of 59 m^2 with a luminous box of 4.12 m^2 in it: every ray meets a patch.
 Scene closed_room() {
   Scene scene = empty_scene({grey(0.5), grey(0.5, 10)});
   scene.materials[0].name = "wall";
@@ -42,7 +42,7 @@ Scene without_a_wall(Scene scene) {
   return scene;
 }
 
-// Solved with form factors that went through a folder.
+// Solved with form factors that were written to a folder and read again.
 Simulation solved_from_folder(const Scene& scene, bool close) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -53,9 +53,9 @@ Simulation solved_from_folder(const Scene& scene, bool close) {
                   {.exchange = [&](const PatchMesh& mesh) { return read_exchange(place, info, mesh); }});
 }
 
-// A factor passes through two roundings to float, 2^-24 each. Errors of F of this size in every entry change B by
-// rho / (1 - rho) times as much: here 2 * 6e-8 * 0.5 / 0.5, and some for the closure. Raw ones are closed after they
-// were read, in an open scene by the errors of their entries.
+// A factor is rounded to float twice, 2^-24 each. Such errors in every entry of F change B by rho / (1 - rho) times as
+// much: here 2 * 6e-8 * 0.5 / 0.5, plus the change by the closure. Raw factors are closed after reading, in an open
+// scene by the errors of their entries.
 class StoredFormFactors : public testing::TestWithParam<bool> {};
 
 TEST_P(StoredFormFactors, GiveTheSameSolution) {
@@ -78,7 +78,7 @@ TEST_P(StoredFormFactors, GiveTheSameSolution) {
 
 INSTANTIATE_TEST_SUITE_P(RawAndClosed, StoredFormFactors, testing::Values(false, true));
 
-// With all that a folder holds; every step is a sum of products with numbers that double, which is exact.
+// A folder with all optional contents. Every step is a sum of products with doubled numbers, which is exact.
 TEST(StoredFormFactors, CarryTwiceTheLightOfTwiceTheExitance) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -100,7 +100,7 @@ TEST(StoredFormFactors, CarryTwiceTheLightOfTwiceTheExitance) {
   EXPECT_LE((irradiance(2) / once - 2).abs().maxCoeff(), 1e-12);
 }
 
-// The sums of closed rows come back to the last digits, although each entry went through floats.
+// The sums of closed rows are restored to the last digits, although each entry was stored as a float.
 TEST(StoredFormFactors, OfAClosedRoomStayClosed) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -132,7 +132,7 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   EXPECT_EQ(info.closure, "least squares");
 }
 
-// A folder from before these keys were written.
+// A folder without these keys, as older versions wrote it.
 TEST(StoredFormFactors, WithoutTheirSamplingErrorAreRead) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -168,13 +168,13 @@ TEST(StoredFormFactors, HaveTheStandardErrorsThatWereKept) {
   }
   EXPECT_EQ(estimated, 2 * static_cast<int>(found.exchange.counts.partial_pairs));
   EXPECT_GT(estimated, 0);
-  // They go with an earlier result.
+  // These belong to an earlier result.
   write_form_factors(place, {scene, find_form_factors(scene, coarse()), {}, "a command"});
   EXPECT_FALSE(fs::exists(place / "standard_error.npy"));
 }
 
-// What was written is read: with samples so few that rows are far from their sums, by every estimator, raw and closed,
-// in an open and in a closed room.
+// Stored factors can be read: with so few samples that rows are far from their sums, by every estimator, raw and
+// closed, in an open and a closed room.
 TEST(StoredFormFactors, OfEveryEstimatorAreTaken) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -194,8 +194,8 @@ TEST(StoredFormFactors, OfEveryEstimatorAreTaken) {
   }
 }
 
-// The first patch sees the second alone, whose row is five times what it can be: with that the first one's is cut to a
-// fifth, too, although it was right.
+// The first patch sees only the second, whose row is five times its maximum. So the row of the first patch is also cut
+// to a fifth, although it was correct.
 TEST(StoredFormFactors, BesideARowThatWasCutAreTaken) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -219,7 +219,7 @@ TEST(StoredFormFactors, BesideARowThatWasCutAreTaken) {
   EXPECT_NO_THROW(read_exchange(place, read_form_factor_info(place), found.mesh));
 }
 
-// Their bytes may be any, but one for each pair.
+// The bytes may have any value, but there must be one for each pair.
 TEST(StoredFormFactors, WithErrorsOfOtherPairsAreRefused) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -279,7 +279,7 @@ TEST(StoredFormFactors, DamagedFilesAreRefused) {
     damage(name, [](std::string& content) { content.resize(content.size() - 3); });
     damage(name, [](std::string& content) { content.clear(); });
   }
-  // Reciprocity, and numbers that cannot be.
+  // Reciprocity, and impossible values.
   damage("F.npy", [](std::string& content) { content.replace(content.size() - 40, 4, std::string("\0\0\0\x3f", 4)); });
   damage("F.npy", [](std::string& content) { content.replace(content.size() - 4, 4, "\xff\xff\xff\x7f"); });
   damage("area.npy", [](std::string& content) { content.replace(content.size() - 8, 8, std::string(8, '\0')); });
@@ -302,7 +302,7 @@ TEST(StoredFormFactors, ReplaceAnEarlierResultAndNothingElse) {
   EXPECT_EQ(content_of(place / "notes.txt"), "mine");
 }
 
-// A room that is closed: everything that leaves a group arrives somewhere, and groups exchange equally.
+// In a closed room all light that leaves a group arrives somewhere, and the exchange of groups is symmetric.
 TEST(GroupFactors, AreClosedAndReciprocal) {
   const Scene scene = closed_room();
   const FormFactors found = find_form_factors(scene, coarse());
@@ -310,7 +310,7 @@ TEST(GroupFactors, AreClosedAndReciprocal) {
   ASSERT_EQ(groups.names, (std::vector<std::string>{"wall", "lamp"}));
   EXPECT_NEAR(groups.area[0], 59, 1e-9);
   EXPECT_NEAR(groups.area[1], 4.12, 1e-9);
-  // What storage as floats takes from a row is below 1e-7.
+  // The rounding of a row to floats is below 1e-7.
   EXPECT_NEAR(groups.form_factor.row(0).sum(), 1, 2e-7);
   EXPECT_NEAR(groups.form_factor.row(1).sum(), 1, 2e-7);
   const Eigen::MatrixXd exchange = groups.area.asDiagonal() * groups.form_factor;

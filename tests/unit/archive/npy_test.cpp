@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* start_of_version_1 = "\x93NUMPY\x01";
 
-// A file with this dictionary, padded as the format asks, and so many bytes of values.
+// A file with this dictionary, padded to the format's size, and this many bytes of values.
 void put_array(const std::filesystem::path& file, std::string dictionary, std::size_t bytes, char version = 1) {
   dictionary.resize(118, ' ');
   std::ofstream stream(file, std::ios::binary);
@@ -107,7 +107,7 @@ TEST(Npy, WhatIsNotSuchAnArrayIsRefused) {
   }
 }
 
-// The numbers of the header are believed only if the file is as long as they say, also where their product overflows.
+// The header's numbers are accepted only if the file has the matching length, even if their product overflows.
 TEST(Npy, AShapeThatTheFileCannotHoldIsRefused) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "a.npy";

@@ -34,7 +34,7 @@ Request by_rays() {
   return request;
 }
 
-// A point lamp just above the floor makes a patch so bright that rays are sent towards it: their hits are entries.
+// A point lamp just above the floor makes a patch so bright that rays are aimed at it. Their hits are entries.
 Scene room_with_bright_spot() {
   Scene scene = test_room(0.6);
   Luminaire lamp;
@@ -82,13 +82,13 @@ TEST_F(RayRowFiles, GiveBackEveryBit) {
   const Simulation from_folder = relit(scene_);
   EXPECT_TRUE((from_folder.solution.radiosity == at_once.solution.radiosity).all());
   EXPECT_TRUE((from_folder.ray_standard_error == at_once.ray_standard_error).all());
-  // No ray is traced, so that nothing is known of the size of the patches.
+  // No ray is traced, so the error from the size of the patches is unknown.
   EXPECT_EQ(from_folder.transport.counts.shadow_rays, 0);
   EXPECT_FALSE(from_folder.error_bars);
 }
 
-// A tent of mirrors on the floor. Under it rays meet nothing but what touches the floor, unless mirrors send them on:
-// what lies covered, and has no patch, is the same for rows and for solutions.
+// A tent of mirrors on the floor. Rays under it meet only faces that touch the floor, unless mirrors redirect them.
+// Rows and solutions cover the same patches.
 TEST(RayRowFilesOfMirrors, AreOfTheSamePatchesAsASolution) {
   Scene scene = test_room(0.6);
   Material mirror = scene.materials[0];
@@ -112,7 +112,7 @@ TEST(RayRowFilesOfMirrors, AreOfTheSamePatchesAsASolution) {
   EXPECT_EQ(hash, geometry_hash(found.mesh));
 }
 
-// B is linear in E: a lamp of twice the exitance gives twice the light, to the bit as 2 is a power of two.
+// B is linear in E: a lamp of twice the exitance gives exactly twice the light, because 2 is a power of two.
 TEST_F(RayRowFiles, AreOfAnyLight) {
   Scene brighter = scene_;
   for (Material& material : brighter.materials) material.exitance = material.exitance * 2;
@@ -121,8 +121,8 @@ TEST_F(RayRowFiles, AreOfAnyLight) {
   EXPECT_TRUE((relit(brighter).solution.radiosity == 2 * once.solution.radiosity).all());
 }
 
-// Other reflectances, against all pairs on the same mesh: without the luminaire, as around that the mesh of pairs is
-// finer. The bars are those of the rays alone.
+// Other reflectances, compared with all pairs on the same mesh. The room has no luminaire, because the pair method
+// refines its mesh around it. The bars are those of the rays alone.
 TEST_F(RayRowFiles, AreOfAnyMaterial) {
   scene_.luminaires.clear();
   found_ = find_ray_form_factors(scene_, by_rays());
@@ -144,7 +144,7 @@ TEST_F(RayRowFiles, AreOfAnyMaterial) {
   EXPECT_GT(ratio, 0.3);
 }
 
-// The room with another lamp, of 5 mm or 20 cm, which emits as many watts as asked, or with that alone.
+// The room with another lamp of 5 mm or 20 cm, with this flux in watts, or with that lamp alone.
 Scene with_another_lamp(double size, double watts, bool alone) {
   Scene scene = test_room(0.6);
   if (alone)
@@ -158,8 +158,8 @@ Scene with_another_lamp(double size, double watts, bool alone) {
                    material);
 }
 
-// Light of a lamp that was dark when the rows were traced, against all pairs: the error is what is stated, and not as
-// without that lamp. Size; alone.
+// Light of a lamp that was dark during the tracing, compared with all pairs. The error matches the stated one, which
+// includes that lamp. Parameters: size; alone.
 class NewLamp : public testing::TestWithParam<std::tuple<double, bool>> {};
 
 TEST_P(NewLamp, IsFoundOrInTheBars) {

@@ -31,7 +31,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 class ReadSolution : public testing::Test {
  protected:
-  // The tiny solution, changed after it was smoothed.
+  // The tiny solution, changed after smoothing.
   void write(const std::function<void(Simulation&)>& change = [](Simulation&) {}) {
     Simulation simulation = tiny_simulation();
     const SolvedSurface surface = surface_of(simulation);

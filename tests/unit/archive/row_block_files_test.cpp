@@ -25,7 +25,7 @@ struct Folder {
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
 
-  // Tests run side by side.
+  // Tests run in parallel.
   std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) /
       ("row_blocks_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
@@ -43,7 +43,7 @@ TEST(RowBlockFiles, GiveBackWhatWasKept) {
   EXPECT_FALSE(row_blocks_in(folder.path, "4567").read(0).has_value());
 }
 
-// One bit at a time, and each length below its own.
+// Each bit is flipped in turn, and the file is cut to each shorter length.
 TEST(RowBlockFiles, TakeNoDamagedOnes) {
   const Folder folder;
   const RowBlocks blocks = row_blocks_in(folder.path, "0123");
@@ -65,7 +65,7 @@ TEST(RowBlockFiles, TakeNoDamagedOnes) {
   }
   write(whole);
   EXPECT_EQ(blocks.read(0), words);
-  // Of another place.
+  // A block of another place.
   std::filesystem::rename(file, folder.path / "rows_0123_1.npy");
   EXPECT_FALSE(blocks.read(1).has_value());
   // No file at all.

@@ -21,7 +21,7 @@ using namespace test;
 
 bool same(const Spectrum& a, const Spectrum& b) { return a.size() == b.size() && (a == b).all(); }
 
-// What a light is made of, as numbers.
+// The properties of a light as numbers.
 struct Numbers {
   std::vector<double> operator()(const PointLight& light) const { return {light.intensity[0]}; }
   std::vector<double> operator()(const SpotLight& light) const {
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(AllOfThem, ShippedModel,
                          testing::Values("cornell_box", "furnace_cube", "parallel_squares", "perpendicular_squares",
                                          "two_rooms"));
 
-// What no shipped model has: holes in the numbering, backs, bytes that are not UTF-8, numbers at the limits.
+// Cases that no shipped model has: gaps in the numbering, backs, bytes that are not UTF-8, extreme numbers.
 Scene odd_scene() {
   Scene scene = furnished_room(std::nextafter(1.0, 0.0), 1e300);
   scene.vertices.push_back({-0.0, 5e-324, 1e15 / 3});
@@ -197,7 +197,7 @@ TEST(SceneFile, KeepsEveryBitOfAnOddScene) {
   EXPECT_TRUE(std::signbit(stored.scene.vertices.back().x()));
 }
 
-// One light of each kind, sun and sky, and where they are looked at.
+// One light of each kind, sun and sky, and sensors and views.
 Scene lit_scene() {
   Scene scene = odd_scene();
   const Spectrum one = Spectrum::Constant(1, 1.0 / 3);
@@ -262,7 +262,7 @@ TEST(SceneFile, RefusesLightsThatAreDamaged) {
   }
 }
 
-// Of earlier versions, which said that there were lights and did not keep them.
+// Earlier versions recorded that there were lights, but did not store them.
 TEST(SceneFile, OfBeforeLightsIsReadWhereThereWereNone) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "scene.json";
@@ -291,7 +291,7 @@ TEST(SceneFile, OfBeforeIndicesHasTheUsualOnes) {
     EXPECT_EQ(material.index, usual_index);
 }
 
-// Each change makes the file one that cannot have been written.
+// No program can write the file after any of these changes.
 TEST(SceneFile, RefusesWhatIsDamaged) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "scene.json";

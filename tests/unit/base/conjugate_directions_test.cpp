@@ -8,7 +8,7 @@ namespace {
 
 constexpr Eigen::Index n = 6;
 
-// A symmetric positive matrix whose diagonal is far from even.
+// A symmetric positive definite matrix whose diagonal entries differ widely.
 Eigen::MatrixXd system() {
   Eigen::MatrixXd A = Eigen::MatrixXd::Constant(n, n, 0.5);
   for (Eigen::Index i = 0; i < n; ++i) A(i, i) = 1 + static_cast<double>(i * i);
@@ -30,7 +30,7 @@ Eigen::VectorXd solution(const ConjugateDirections<Eigen::VectorXd>::Preconditio
   return x;
 }
 
-// Without rounding the n-th iterate solves a system of n unknowns; the condition here is about 40.
+// Without rounding the n-th iterate solves a system of n unknowns. The condition number here is about 40.
 TEST(ConjugateDirections, SolveInAsManyStepsAsThereAreUnknowns) {
   const Eigen::VectorXd exact = system().partialPivLu().solve(right_side());
   const Eigen::VectorXd diagonal = system().diagonal();
@@ -39,7 +39,7 @@ TEST(ConjugateDirections, SolveInAsManyStepsAsThereAreUnknowns) {
   EXPECT_LT((solution(by_diagonal) - exact).norm(), 1e-12);
 }
 
-// Each direction is conjugate to those before: p_k . A p_l = 0.
+// Each direction is conjugate to the earlier ones: p_k . A p_l = 0.
 TEST(ConjugateDirections, AreConjugate) {
   ConjugateDirections<Eigen::VectorXd> method(right_side());
   const Eigen::VectorXd first = method.direction();
@@ -50,7 +50,7 @@ TEST(ConjugateDirections, AreConjugate) {
   }
 }
 
-// Bands go their own ways: one that is solved already takes no step, and the other is solved as if alone.
+// Bands are independent: a solved one takes no step, and the other is solved as if alone.
 TEST(ConjugateDirections, OfBandsDoNotMix) {
   Field residual = Field::Zero(n, 2);
   residual.col(1) = right_side().array();

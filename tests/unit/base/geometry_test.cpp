@@ -13,7 +13,7 @@ const std::vector<Point> ell{Point(0, 0, 5), Point(2, 0, 5), Point(2, 1, 5),
 TEST(AreaVector, OfAConcavePolygon) { EXPECT_LT((area_vector(ell) - Vector(0, 0, 3)).norm(), 1e-15); }
 
 TEST(AreaCentroid, IsTheMeanOfTheParts) {
-  // Squares at (.5, .5), (1.5, .5), (.5, 1.5).
+  // Squares at (0.5, 0.5), (1.5, 0.5), (0.5, 1.5).
   EXPECT_LT((area_centroid(ell) - Point(2.5 / 3, 2.5 / 3, 5)).norm(), 1e-15);
 }
 
@@ -38,7 +38,8 @@ TEST(ClipToHalfSpace, KeepsAllOrNothing) {
   EXPECT_TRUE(clip_to_half_space(ell, Point(0, 0, 6), Vector::UnitZ()).empty());
 }
 
-// A square standing on the plane, turned so that rounding lifts or lowers its lower corners: all four stay.
+// A square stands on the plane. It is rotated so that rounding lifts or lowers its lower corners. All four corners
+// stay.
 TEST(ClipToHalfSpace, CornersOnThePlaneStayHoweverItIsTurned) {
   const std::array<Point, 4> square{Point(0, 1, 0), Point(0, 2, 0), Point(0, 2, 1), Point(0, 1, 1)};
   for (int k = 0; k < 100; ++k) {

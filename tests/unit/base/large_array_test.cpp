@@ -8,8 +8,8 @@ namespace {
 
 std::uintptr_t place(const void* memory) { return reinterpret_cast<std::uintptr_t>(memory); }
 
-// Rows of 64 bytes start at a cache line, whatever the size; sizes below and above the 8 MiB from which memory comes in
-// pages of 2 MiB.
+// Rows of 64 bytes start at a cache line for every size. The sizes lie below and above 8 MiB, from which memory comes
+// in pages of 2 MiB.
 TEST(LargeArray, StartsAtACacheLine) {
   for (const std::size_t count : {1, 7, 64, 4096, 100001, (1 << 20) + 1, 3000000}) {
     const LargeArray<double> doubles(count, 1.5);

@@ -25,7 +25,7 @@ TEST(ThreadLimit, HoldsWhileItLives) {
   std::mutex writing;
   std::set<std::thread::id> threads;
   parallel_for(200, [&](std::size_t) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // long enough for another thread to take part
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // long enough for another thread to start
     const std::scoped_lock lock(writing);
     threads.insert(std::this_thread::get_id());
   });

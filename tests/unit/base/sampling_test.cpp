@@ -34,7 +34,7 @@ TEST(ScrambledSobol, FirstTwoDimensionsFormANet) {
   }
 }
 
-// Boost's engine leaves out the zero point.
+// Boost's engine omits the zero point.
 TEST(ScrambledSobol, IsSobolsSequenceScrambled) {
   for (const std::uint32_t seed : {1U, 7U}) {
     const auto points = scrambled_sobol(1U << 16U, seed);
@@ -53,7 +53,7 @@ TEST(ScrambledSobol, IsSobolsSequenceScrambled) {
 TEST(ScrambledSobol, SeedsDiffer) { EXPECT_NE(scrambled_sobol(1, 1)[0], scrambled_sobol(1, 2)[0]); }
 
 TEST(OwenScramble, IsAPermutationThatKeepsCommonPrefixes) {
-  // Numbers that agree in their first k bits still do after scrambling, and then differ.
+  // Numbers that agree in their first k bits still agree in these after scrambling, and then differ.
   for (int k = 0; k < 32; ++k) {
     const std::uint32_t a = 0x12345678U;
     const std::uint32_t b = a ^ (0x80000000U >> k);
@@ -63,7 +63,8 @@ TEST(OwenScramble, IsAPermutationThatKeepsCommonPrefixes) {
 }
 
 TEST(SquareToTriangle, MapsEqualAreasToEqualAreas) {
-  // The triangle b1 + b2 <= h has the share h^2 of the whole; 2^12 stratified points meet it to a few times 2^-12.
+  // The triangle b1 + b2 <= h has the fraction h^2 of the area. 2^12 stratified points reproduce it to a few times
+  // 2^-12.
   const auto points = scrambled_sobol(4096, 5);
   for (const double h : {0.25, 0.5, 0.75}) {
     int inside = 0;
@@ -86,7 +87,7 @@ TEST(SquareToQuad, HasTheAreaCentroidAsMean) {
   EXPECT_LT((mean - area_centroid(kite)).norm(), 3.0 / (1 << 10));
 }
 
-// Single precision rounds coordinates just below 1 to 1: the far side of the triangle, and of the quadrilateral.
+// Single precision rounds coordinates just below 1 to 1, the far edge of the triangle and of the quadrilateral.
 TEST(SquareToQuad, StaysInItAtTheEndOfTheSquare) {
   const std::array<Point, 4> triangle{Point(0, 0, 0), Point(2, 0, 0), Point(0, 1, 0), Point(0, 1, 0)};
   EXPECT_LT((square_to_quad(triangle, 1, 0.5) - Point(1, 0.5, 0)).norm(), 1e-15);

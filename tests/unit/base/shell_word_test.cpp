@@ -19,7 +19,7 @@ TEST(ShellWord, IsInQuotesElsewhere) {
   }
 }
 
-// What stands in quotes ends at the next one: '\'' ends it, adds a quote, and begins it again.
+// A quoted string ends at the next quote: '\'' ends it, adds a quote, and starts the next one.
 TEST(ShellWord, KeepsItsQuotes) {
   EXPECT_EQ(shell_word("Ann's lamp"), "'Ann'\\''s lamp'");
   EXPECT_EQ(shell_word("'"), "''\\'''");

@@ -23,7 +23,7 @@ TEST(Vectors, SumsAreOverPatchesAndOnePerBand) {
   EXPECT_TRUE((highest(x) == Eigen::Array2d(5, 4)).all());
 }
 
-// A band has the sums that it would have alone but for rounding: which bands are solved together does not matter.
+// A band has the same sums as alone, to rounding: the set of bands solved together does not matter.
 TEST(Vectors, BandsDoNotMix) {
   const Field x = Field::Random(1000, 5);
   const Field y = Field::Random(1000, 5);
@@ -34,7 +34,7 @@ TEST(Vectors, BandsDoNotMix) {
   }
 }
 
-// Over more patches than one block has.
+// More patches than one block holds.
 TEST(Vectors, SeveralFieldsAtOnceAreAsOneAfterTheOther) {
   constexpr Eigen::Index patches = 5000;
   const Eigen::VectorXd area = Eigen::VectorXd::Random(patches).cwiseAbs();

@@ -43,11 +43,11 @@ TEST(NewPlaces, AreInAllRooms) {
   ASSERT_TRUE(places.grid.has_value());
   EXPECT_EQ(places.grid->rooms, std::vector<std::string>{"*"});
   EXPECT_TRUE(places.rooms_without.empty());
-  // 3 x 2 m beyond the strip, in cells of 0.2 * 5^log10(4) = 0.53 m at most.
+  // 3 x 2 m remain without the strip, in cells of 0.2 * 5^log10(4) = 0.53 m at most.
   for (const SensorGroup& group : sensors_over(scene, *places.grid).groups) EXPECT_EQ(group.sensors.size(), 6U * 4);
 }
 
-// With the larger window first, from eye height towards the pane.
+// The view towards the larger window comes first, from eye height.
 TEST(NewPlaces, HaveViewsTowardsWindows) {
   const std::vector<Camera> cameras = places_in(house()).cameras;
   ASSERT_EQ(cameras.size(), 2U);
@@ -86,8 +86,8 @@ TEST(NewPlaces, AreOverTheFloorAndNotOverTheFooting) {
   EXPECT_NE(places.grid->group, "footing");
 }
 
-// A closed cupboard of 1 x 1 x 2.2 m stands in the middle of Living: no sensor and no eye is in it, and no view ends at
-// it.
+// A closed cupboard of 1 x 1 x 2.2 m stands in the middle of Living. No sensor and no eye is inside it, and no view
+// ends at it.
 TEST(NewPlaces, AreNotInSolids) {
   const Box cupboard(Point(1.5, 1, 0), Point(2.5, 2, 2.2));
   const Scene scene = with_box(house(), cupboard.min(), cupboard.max(), false);
@@ -104,7 +104,7 @@ TEST(NewPlaces, AreNotInSolids) {
   }
 }
 
-// A cupboard of 1 x 1 m takes a sixth of the 3 x 2 m beyond the strip.
+// A cupboard of 1 x 1 m covers a sixth of the 3 x 2 m without the strip.
 TEST(NewPlaces, NoteTheShareOfAFloor) {
   const FloorGrid grid{"work plane", {}, {"Living"}, 0.8, 0.25, 0.5, {}, 0};
   EXPECT_TRUE(sensors_over(house(), grid).notes.empty());

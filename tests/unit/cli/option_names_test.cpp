@@ -54,7 +54,7 @@ TEST(OptionNames, OfACommandGoBeforeTheUsualOnes) {
   }
 }
 
-// Whatever check() refuses of what the tool lets one ask for is said in options.
+// Options name every part of a request that the tool offers and check() may reject.
 TEST(OptionNames, AreKnownForAllThatARequestCanBeRefusedFor) {
   const auto no_option = [](const RequestPart& part) {
     return part.name == "mesh.kept_sides" || part.name == "given.mesh" || part.name == "assembly.keep_errors";

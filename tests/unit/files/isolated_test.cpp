@@ -85,7 +85,7 @@ TEST(ReadIsolated, WhateverElseHappensIsARefusalOfTheFile) {
   }
 }
 
-// assimp reads on without an end at some damaged numbers, and would take all memory of the machine.
+// assimp does not stop at some damaged numbers, and would use all memory of the machine.
 TEST(ReadIsolated, ASignalThatStopsTheProgramIsNoFaultOfTheFile) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP})
     EXPECT_THROW(read_isolated("a.gltf",
@@ -139,7 +139,7 @@ TEST(OutputIsolated, MemoryIsLimited) {
             0U);
 }
 
-// The kernel has Landlock from version 5.13 on; landlock_create_ruleset(2) returns its version if asked for it.
+// Linux has Landlock since version 5.13. landlock_create_ruleset(2) returns its version on request.
 bool has_landlock() {
 #ifdef SYS_landlock_create_ruleset
   constexpr unsigned asks_version = 1;
@@ -149,7 +149,7 @@ bool has_landlock() {
 #endif
 }
 
-// Without Landlock files are as open as before.
+// Without Landlock, files remain accessible.
 TEST(OutputIsolated, OpensNoConnectionsAndWritesNoFiles) {
   EXPECT_EQ(output("/usr/bin/python3 -c 'import socket; socket.socket()' 2>/dev/null || echo none"), "none\n");
   const std::string file = testing::TempDir() + "patchlight_isolated_test_" + std::to_string(getpid());

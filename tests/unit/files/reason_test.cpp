@@ -22,7 +22,7 @@ std::string reason(const std::function<void()>& fail) {
   return {};
 }
 
-// Exceptions of the standard library and of JSON, each as the libraries throw it.
+// Exceptions of the standard library and of the JSON library, as thrown by them.
 const std::vector<std::function<void()>>& failures() {
   static const json list = json::parse("[1]");
   static const std::vector<std::function<void()>> all = {[] { throw std::bad_alloc(); },
@@ -53,7 +53,7 @@ TEST(ReasonOf, NamesTheKeyAndTheLineInTheFile) {
   EXPECT_NE(reason([] { parse("{\n\n]"); }).find("line 3"), std::string::npos);
 }
 
-// An importer that returns its errors as text meets the same.
+// An importer that returns its errors as text has the same causes.
 TEST(ReasonOf, TextsOfLibrariesAreReplacedToo) {
   EXPECT_EQ(reason_of(std::string("std::bad_alloc")), reason([] { throw std::bad_alloc(); }));
   EXPECT_EQ(reason_of(std::string("a file of version 3")), "a file of version 3");

@@ -5,7 +5,7 @@
 namespace patchlight::sha256_test {
 namespace {
 
-// The two messages and digests of NIST's example computations for FIPS 180-4, and that of the empty message.
+// Two messages and digests from NIST's example computations for FIPS 180-4, and the digest of the empty message.
 TEST(Sha256, GivesThePublishedDigests) {
   EXPECT_EQ(sha256(std::vector<std::string>{}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256(std::vector<std::string>{"abc"}),

@@ -18,14 +18,14 @@ Square moved(const Square& square, const Eigen::Isometry3d& motion, double scale
   return result;
 }
 
-// Rectangle hinged to the floor square's edge on the y axis, opened by `angle` from the floor, front toward the floor.
+// A rectangle hinged to the floor square's edge on the y axis, at `angle` from the floor. Its front faces the floor.
 Square hinged(double angle) {
   const Vector along(std::cos(angle), 0, std::sin(angle));
   return {Point(0, 0, 0), Point(0, 1, 0), Point(Point(0, 1, 0) + along), Point(along)};
 }
 
-// Unit squares facing each other at distance 1 and sharing an edge at 90 degrees: closed forms of Howell's catalogue,
-// C-11 and C-14, evaluated to 16 digits.
+// Unit squares facing each other at distance 1, and sharing an edge at 90 degrees: closed forms C-11 and C-14 of
+// Howell's catalog, evaluated to 16 digits.
 constexpr double opposed = 0.19982489569838732;
 constexpr double perpendicular = 0.20004377607540316;
 
@@ -39,8 +39,8 @@ TEST(ContourExchangeArea, UnitSquaresSharingAnEdge) {
 }
 
 TEST(ContourExchangeArea, IsSymmetric) {
-  // Both orders integrate the same function with the roles of inner and outer integral exchanged: equal to the
-  // quadrature's error.
+  // Both orders integrate the same function with the inner and outer integral exchanged. They agree to the quadrature's
+  // error.
   for (const double degrees : {10.0, 60.0, 90.0, 150.0}) {
     const Square wall = hinged(degrees * std::numbers::pi / 180);
     EXPECT_NEAR(contour_exchange_area(floor_square, wall), contour_exchange_area(wall, floor_square), 1e-6) << degrees;
@@ -73,12 +73,12 @@ TEST(ContourExchangeArea, IsZeroForAvertedAndCoplanarPolygons) {
   const Square beside{Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)};
   const Square below{Point(0, 0, -1), Point(1, 0, -1), Point(1, 1, -1), Point(0, 1, -1)};
   EXPECT_EQ(contour_exchange_area(floor_square, below), 0);
-  // Sixteen terms of size 1/(2 pi) that cancel, each with a few roundings.
+  // Sixteen terms of size 1/(2 pi) cancel, with a few roundings each.
   EXPECT_NEAR(contour_exchange_area(floor_square, beside), 0, 1e-14);
 }
 
 TEST(ContourExchangeArea, ClipsWhatLiesBehindTheOthersPlane) {
-  // A wall that reaches one metre below the floor sees the floor with its upper half only.
+  // Only the upper half of a wall that reaches 1 m below the floor sees the floor.
   const Square half{Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 1), Point(0, 0, 1)};
   const Square whole{Point(0, 0, -1), Point(0, 1, -1), Point(0, 1, 1), Point(0, 0, 1)};
   EXPECT_NEAR(contour_exchange_area(floor_square, whole), contour_exchange_area(floor_square, half), 1e-12);

@@ -38,8 +38,8 @@ std::vector<PairCase> pair_cases() {
 
 class PairSampling : public testing::TestWithParam<PairCase> {};
 
-// The mean weight times the areas is the exchange area: for smooth integrands Owen-scrambled Sobol points of n samples
-// err by much less than n^-1/2; 4096 samples of a weight that varies by a fifth give 1e-3 with room to spare.
+// The mean weight times the areas is the exchange area. For smooth integrands the error of n Owen-scrambled Sobol
+// points is much smaller than n^-1/2. 4096 samples of a weight that varies by a fifth reach 1e-3 with margin.
 TEST_P(PairSampling, MeanIsTheExchangeArea) {
   const TracingFrame frame{Point(1, 1, 1), 0.2};
   const SampledPatch from = sampled_patch(GetParam().from, 0, frame);

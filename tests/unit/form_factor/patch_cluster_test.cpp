@@ -18,8 +18,8 @@ struct Clustered {
   std::vector<PatchCluster> clusters;
 };
 
-// A room with a floating box, turned so that nothing is along an axis, and far from the origin; a triangle floats in
-// it.
+// A room with a floating box and a floating triangle, far from the origin. It is rotated so that nothing is parallel to
+// an axis.
 Clustered clustered_room() {
   const Eigen::Affine3d motion =
       Eigen::Translation3d(1000, -2000, 500) * Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized());
@@ -59,8 +59,8 @@ TEST(PatchClusters, PlanarOnesLieInOnePlane) {
   EXPECT_GT(planar, 10);
 }
 
-// Rows agree with the double-precision value of each pair: to rounding where both take the same rule, and to the rules'
-// bound of 1e-3 where the distance is so near a limit between rules that rounding decides.
+// Rows agree with the double-precision value of each pair: to rounding where both use the same rule. If the distance is
+// so close to a limit between rules that rounding decides, they agree to the rules' bound of 1e-3.
 TEST(ClusterRow, IsTheUnoccludedExchangeArea) {
   const Clustered room = clustered_room();
   std::size_t compared = 0;
@@ -76,7 +76,7 @@ TEST(ClusterRow, IsTheUnoccludedExchangeArea) {
           const bool facing = orientation(i, j) != Orientation::averted;
           const double expected = facing ? unoccluded_exchange_area(i, j) : 0;
           if ((row.facing >> k & 1) == 0) {
-            // Left out: averted, or seen under so flat an angle that single precision cannot tell.
+            // Omitted pairs face away, or their angle is too small for single precision.
             ASSERT_LE(expected, 1e-6 * std::min(i.area, j.area));
             continue;
           }
@@ -91,8 +91,8 @@ TEST(ClusterRow, IsTheUnoccludedExchangeArea) {
   EXPECT_GT(static_cast<double>(rounded), 0.999 * static_cast<double>(compared));
 }
 
-// Two boxes of a hundred-thousandth of the room, two of their sizes apart, in clusters that span the room: single
-// precision would put their faces 3e-3 of the distance away from where they are.
+// Two boxes of a hundred-thousandth of the room, two of their sizes apart, in clusters that span the room. Single
+// precision would misplace their faces by 3e-3 of the distance.
 TEST(ClusterRow, SmallThingsInWideClustersAreLeftToDoublePrecision) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(10, 10, 10), true);
   for (const double x : {3.0, 3.0003}) {
@@ -146,7 +146,7 @@ TEST(ClusterRow, AvertedClustersHaveNoFacingPair) {
       if (!averted(a, b)) continue;
       ++found;
       for (int lane = 0; lane < a.size; ++lane) {
-        // A patch and its back, or itself, are left to double precision, as they have no distance.
+        // A patch and its back, or itself, have no distance and are left to double precision.
         const ClusterRow row = cluster_row(a, lane, b);
         for (std::size_t k = 0; k < static_cast<std::size_t>(b.size); ++k) {
           const PatchIndex other = b.patches[k];

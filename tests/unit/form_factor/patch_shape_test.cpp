@@ -25,7 +25,7 @@ std::vector<PatchShape> shapes_of(const std::vector<Point>& first, const std::ve
 const std::vector<Point> square{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
 const std::vector<Point> triangle{Point(0, 0, 0), Point(1.2, 0, 0), Point(0.3, 0.9, 0)};
 
-// A polygon facing down, turned by `tilt` about the y axis, at `place`.
+// A polygon facing down, rotated by `tilt` about the y axis, at `place`.
 std::vector<Point> facing_down(std::vector<Point> polygon, double tilt, const Point& place) {
   const Eigen::Affine3d motion =
       Eigen::Translation3d(place) * Eigen::AngleAxisd(std::numbers::pi + tilt, Vector::UnitY());
@@ -42,8 +42,8 @@ double integral(const Rule& rule, const std::function<double(double, double)>& f
 }
 
 TEST(Quadrature, IntegratesPolynomialsExactly) {
-  // Over the unit square x^m y^n has the integral 1 / ((m + 1)(n + 1)); over a triangle with vertices 0, a, b that of
-  // degree 2 is A/6 (a^2 + a b + b^2) per coordinate product; both rules must agree there, and to the area.
+  // Over the unit square, the integral of x^m y^n is 1 / ((m + 1)(n + 1)). Over a triangle with vertices 0, a, b, each
+  // coordinate product of degree 2 has A/6 (a^2 + a b + b^2). Both rules must reproduce these, and the area.
   const auto shapes = shapes_of(square, facing_down(square, 0, Point(0, 0, 5)));
   const auto cubic = [](double x, double y) { return x * x * x + x * y * y; };
   EXPECT_NEAR(integral(shapes[0].coarse, cubic), 0.25 + 1.0 / 6, 1e-14);
@@ -63,7 +63,7 @@ TEST(Quadrature, IntegratesPolynomialsExactly) {
 }
 
 TEST(UnoccludedExchangeArea, AgreesWithTheContourIntegralInEveryClass) {
-  // Near, middle and far pairs, facing and straddling; 1e-3 is what the header promises.
+  // Near, middle and far pairs, facing and straddling. The header guarantees 1e-3.
   for (const auto& polygon : {square, triangle}) {
     for (const double distance : {1.0, 3.5, 5.0, 9.0}) {
       for (const double tilt : {0.0, 0.6, 1.4, 1.7}) {

@@ -25,7 +25,7 @@ TEST(SampleSolidAngle, MeanWeightIsTheFormFactor) {
   const Vector up = Vector::UnitZ();
   EXPECT_NEAR(mean_weight(Point(0.5, 0.5, 0), up, ceiling), point_to_polygon(Point(0.5, 0.5, 0), up, ceiling), 3e-4);
   EXPECT_NEAR(mean_weight(Point(3, 0.2, 0), up, ceiling), point_to_polygon(Point(3, 0.2, 0), up, ceiling), 1e-4);
-  // Very near, where area sampling has no finite variance, and partly below the horizon.
+  // Very near, where area sampling has infinite variance, and partly below the horizon.
   EXPECT_NEAR(mean_weight(Point(0.3, 0.7, 0.999), up, ceiling), point_to_polygon(Point(0.3, 0.7, 0.999), up, ceiling),
               1e-3);
   const Vector tilted = Vector(1, 0, 0.2).normalized();
@@ -33,9 +33,9 @@ TEST(SampleSolidAngle, MeanWeightIsTheFormFactor) {
               point_to_polygon(Point(0.5, 0.5, 0.5), tilted, ceiling), 1e-3);
 }
 
-// A strip that is seen almost edge on, from 0.5 to 2 m away: 6e-5 sr, most of it from its near end, though most of its
-// area is far. In metres and millimetres, and turned. Weights vary by the cube of 4, so that the mean of 4096 is right
-// to a few times 1e-3.
+// A strip seen almost edge on, from 0.5 to 2 m away: 6e-5 sr. Most of that comes from its near end, though most of its
+// area is far. In meters, and rotated in millimeters. Weights vary by 4^3, so the mean of 4096 is accurate to a few
+// times 1e-3.
 TEST(SampleSolidAngle, MeanWeightOfASliverIsTheFormFactor) {
   const Square strip{Point(0.5, -0.1, 2e-4), Point(0.5, 0.1, 2e-4), Point(2, 0.1, 2e-4), Point(2, -0.1, 2e-4)};
   for (const double size : {1.0, 1e-3}) {
@@ -50,7 +50,7 @@ TEST(SampleSolidAngle, MeanWeightOfASliverIsTheFormFactor) {
 }
 
 TEST(SampleSolidAngle, PointsAreUniformInSolidAngle) {
-  // The share of points in a part of the polygon is that part's share of the solid angle.
+  // The fraction of points in a part of the polygon is that part's fraction of the solid angle.
   const Point from(0.2, 0.1, 0.4);
   const auto solid_angle = [&](double x) {
     return -signed_solid_angle(from, Point(0, 0, 1), Point(0, 1, 1), Point(x, 1, 1)) -

@@ -27,7 +27,7 @@ PatchMesh fronts(const Scene& scene, double max_edge) {
 }
 
 TEST(GatherIrradiance, InAClosedRoomOfUnitRadiosityIsOneAnywhereInAnyDirection) {
-  // The form factors of all patches seen from a point add up to 1, in closed form: only rounding is left.
+  // The closed-form form factors from a point to all patches add up to 1, to rounding.
   const Scene scene = cube_room(0.5, 0.5);
   const PatchMesh mesh = fronts(scene, 0.3);
   const Field ones = Field::Ones(mesh.size(), 1);
@@ -39,7 +39,8 @@ TEST(GatherIrradiance, InAClosedRoomOfUnitRadiosityIsOneAnywhereInAnyDirection) 
 }
 
 TEST(GatherIrradiance, BelowALampFollowsLambert) {
-  // Half of the lamp is hidden by a plate whose edge lies below the lamp's middle: by symmetry half of the closed form.
+  // A plate hides half of the lamp. Its edge lies below the lamp's middle, so by symmetry half of the closed form
+  // remains.
   Scene scene = empty_scene({grey(0), grey(0, 7)});
   scene = with_quad(std::move(scene), {Point(-1, -1, 0), Point(1, -1, 0), Point(1, 1, 0), Point(-1, 1, 0)});
   scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);
@@ -55,9 +56,9 @@ TEST(GatherIrradiance, BelowALampFollowsLambert) {
   EXPECT_NEAR(irradiance(0, 0), 0.5 * whole, 0.003 * whole);
 }
 
-// The scene of the test before with a plate that is turned by 20 degrees, so that no line of the sampling points runs
-// along its edge. Over many seeds the errors have the size that the standard errors say: these are from the scatter of
-// eight independent replicates, whose variance has no bias.
+// The scene of the previous test with the plate rotated by 20 degrees, so that no line of sampling points is parallel
+// to its edge. Over many seeds the errors match the standard errors. These come from the scatter of eight independent
+// replicates, whose variance has no bias.
 TEST(GatherIrradiance, StandardErrorIsThatOfTheShadowRays) {
   Scene scene = empty_scene({grey(0), grey(0, 7)});
   scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);
@@ -71,7 +72,7 @@ TEST(GatherIrradiance, StandardErrorIsThatOfTheShadowRays) {
   exitance(0, 0) = 7;
   const Occluder occluder(scene, Occluder::Blockers::all);
   const std::vector<Sensor> sensors{{Point(0, 0, 0), Vector::UnitZ()}};
-  // By symmetry the plate hides half of the lamp, whatever its turn.
+  // The plate hides half of the lamp by symmetry, at any rotation.
   const double root = std::sqrt(1.04);
   const double half = 0.5 * 7 * 4 / std::numbers::pi * 0.2 / root * std::atan(0.2 / root);
   double squared_errors = 0, variances = 0;
@@ -88,7 +89,7 @@ TEST(GatherIrradiance, StandardErrorIsThatOfTheShadowRays) {
   EXPECT_LT(ratio, 1.15) << "the error bars are too long";
 }
 
-// A grid of sensors in a room with a box and a lamp, against many more rays.
+// A grid of sensors in a room with a box and a lamp, compared with many more rays.
 TEST(GatherIrradiance, StandardErrorsHoldInAFurnishedRoom) {
   const Scene scene = furnished_room(0.5, 10);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::automatic), 0.3);
@@ -120,8 +121,8 @@ TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
 }
 
 TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
-  // In a closed room of unit radiosity the form factors of all patches add up to 1: so do errors of one sign, and those
-  // that have nothing to do with each other to less.
+  // In a closed room of unit radiosity the form factors of all patches add up to 1. So do errors of one sign.
+  // Independent errors add up to less.
   const Scene scene = cube_room(0.5, 0.5);
   const PatchMesh mesh = fronts(scene, 0.2);
   const Field ones = Field::Ones(mesh.size(), 1);
@@ -136,7 +137,7 @@ TEST(SensorErrors, AreGatheredAsTheLightOfThePatchesIs) {
   EXPECT_NEAR(errors.total()(0, 0), std::sqrt((errors.rays.square() + errors.sampling.square()).value() + 0.13), 1e-9);
 }
 
-// A sampling error that all patches have in common does not average out: each of two draws is the level of the room.
+// A sampling error that all patches share does not average out: each of two draws is the level of the room.
 TEST(SensorErrors, HaveTheLevelThatPatchesShare) {
   const Scene scene = cube_room(0.5, 0.5);
   const PatchMesh mesh = fronts(scene, 0.2);
@@ -153,9 +154,9 @@ TEST(SensorErrors, HaveTheLevelThatPatchesShare) {
   EXPECT_NEAR(errors.sampling(0, 0), 0.1, 1e-9);
 }
 
-// A sheet hides half of a floor on which the radiosity grows to one side, so that what is seen of each patch, and where
-// on it, is found by rays: over many seeds the readings scatter as is stated, a variance of 200 to some 10 %, that of
-// eight replicates to 4 % in their mean.
+// A sheet hides half of a floor whose radiosity increases to one side. Rays find the visible part of each patch. Over
+// many seeds the readings scatter by the stated error: the variance of 200 is known to about 10 %, the mean variance of
+// eight replicates to 4 %.
 TEST(GatherIrradiance, OfPlanesThatAreHiddenInPartScattersAsItStates) {
   Scene scene = with_quad(empty_scene({grey(0)}), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
   const PatchMesh mesh = fronts(scene, 1);
@@ -178,8 +179,8 @@ TEST(GatherIrradiance, OfPlanesThatAreHiddenInPartScattersAsItStates) {
   EXPECT_LT(variance, 1.3 * stated / seeds);
 }
 
-// A floor of 4 x 4 m whose radiosity falls off towards its middle, as the means of patches, in two units. Patches of
-// 5 cm err a hundredth of those of 50 cm: they are the reference.
+// A floor of 4 x 4 m whose radiosity decreases towards its middle, as means over the patches, in two units. The errors
+// of patches of 5 cm are a hundredth of those of 50 cm, so they are the reference.
 TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
   for (const double scale : {1.0, 1e-3}) {
     Scene scene =
@@ -202,14 +203,14 @@ TEST(SensorErrors, CoverWhatThePatchesLeaveOfTheLight) {
     const Field error = (found.irradiance - exact.irradiance).abs();
     const auto outside = (error > 2.6 * found.errors.total()).count();
     EXPECT_LE(outside, static_cast<Eigen::Index>(sensors.size() / 20)) << "of " << sensors.size();
-    // By the rays alone, of which none is blocked, those over the kink in the middle would be outside: 9 of the 23
-    // places along x are nearer to it than a patch and a half is wide.
+    // No ray is blocked. The errors of rays alone would exclude sensors over the kink in the middle. One and a half
+    // patch widths around it contain 9 of the 23 positions along x.
     EXPECT_GT((error > 2.6 * found.errors.rays).count(), static_cast<Eigen::Index>(sensors.size() / 3));
   }
 }
 
-// Fins of one patch each, whose radiosity grows upward from 0. From the side a sensor sees the dark lower ends of all
-// but the nearest, so the errors of the fins add up. The reference has patches of an eighth.
+// Fins of one patch each, whose radiosity increases upward from 0. From the side a sensor sees only the dark lower ends
+// of all fins but the nearest. So the errors of the fins add up. The reference has patches of an eighth.
 TEST(SensorErrors, CoverEndsOfPatchesThatAreHidden) {
   Scene scene = empty_scene({grey(0)});
   for (int k = 0; k < 40; ++k) {
@@ -236,7 +237,7 @@ TEST(SensorErrors, CoverEndsOfPatchesThatAreHidden) {
   EXPECT_GT(ratio.maxCoeff(), 0.3);
 }
 
-// Seen from close above its far end, a strip of 200 m has most of its form factor in a few of its square meters.
+// From close above its far end, a few square meters of a strip of 200 m give most of its form factor.
 TEST(GatherIrradiance, OfALargePatchSeenInPartScattersAsItStates) {
   Scene scene =
       with_quad(empty_scene({grey(0)}), {Point(-1, -1, 0), Point(199, -1, 0), Point(199, 1, 0), Point(-1, 1, 0)});
@@ -244,7 +245,7 @@ TEST(GatherIrradiance, OfALargePatchSeenInPartScattersAsItStates) {
   scene = with_quad(std::move(scene), {Point(0.3, -3, .3), Point(299, -3, .3), Point(299, 3, .3), Point(0.3, 3, .3)});
   const Occluder occluder(scene, Occluder::Blockers::all);
   const Sensor sensor{Point(0, 0, 0.6), -Vector::UnitZ()};
-  // A ray to x passes the edge of the plate, half as high as the sensor, at x / 2.
+  // A ray to x passes the edge of the plate, at half the sensor's height, at x / 2.
   const std::vector<Point> seen{Point(-1, -1, 0), Point(0.6, -1, 0), Point(0.6, 1, 0), Point(-1, 1, 0)};
   const double exact = point_to_polygon(sensor.point, sensor.normal, seen);
   for (int seed = 1; seed <= 20; ++seed) {
@@ -257,7 +258,7 @@ TEST(GatherIrradiance, OfALargePatchSeenInPartScattersAsItStates) {
 }
 
 TEST(SensorsFarOff, AreThoseFartherAwayThanTheModelIsLong) {
-  // The cube of 1 m is sqrt(3) m long.
+  // The diagonal of the cube of 1 m is sqrt(3) m.
   Scene scene = cube_room(0.5, 0.5);
   scene.sensors = {
       {.name = "near", .sensors = {{Point(0.5, 0.5, 0.5), Vector::UnitZ()}, {Point(2.7, 0, 0), Vector::UnitZ()}}}};
@@ -333,8 +334,8 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   add(Point(0.5, 0.5, 0.8), Vector::UnitZ(), 1);    // free
   add(Point(1.5, 1.4, 0.8), Vector::UnitZ(), 2);    // inside the box
   add(Point(1, 1.4, 0.8), Vector::UnitZ(), 3);      // in a side of the box
-  add(Point(0.5, 0.5, 0), Vector::UnitZ(), 4);      // on the floor, facing up: as one measures a floor
-  add(Point(0.999, 1.4, 0.8), Vector::UnitZ(), 5);  // a millimetre beside the box
+  add(Point(0.5, 0.5, 0), Vector::UnitZ(), 4);      // on the floor, facing up, the usual position of a luxmeter
+  add(Point(0.999, 1.4, 0.8), Vector::UnitZ(), 5);  // 1 mm beside the box
   add(Point(1, 2.5, 0.8), Vector::UnitZ(), 6);      // in the plane of a side, beside it
   scene.sensors.push_back(group);
   const Occluder occluder(scene, Occluder::Blockers::all);
@@ -346,7 +347,7 @@ TEST(DoubtfulSensors, AreThoseInsideSolidsAndInSurfaces) {
   EXPECT_EQ(found[1].rfind("sensor 3 of 'desk' (room.toml:3) at 1, 1.4, 0.8 m lies in a surface", 0), 0U) << found[1];
 }
 
-// Over a floor with a picture in patches of 1 x 1 m, 1.41 m from corner to corner.
+// The floor below has a texture, in patches of 1 x 1 m with a diagonal of 1.41 m.
 TEST(SensorsCloseToPictures, AreThoseThatSeeSuchAPatchFromNearItsWidth) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   const auto told = [&](const Point& point, const Vector& normal) {

@@ -10,16 +10,16 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-// A room of 4 x 2 x 2 m with a wall across its middle, x = 0. What lies behind the wall has a radiosity of 1, the rest
-// none: then the irradiance of a sensor before the wall is the form factor of the wall's openings, in closed form,
-// as every ray through one of them meets light.
+// A room of 4 x 2 x 2 m with a wall across its middle, x = 0. Surfaces behind the wall have a radiosity of 1, all
+// others 0. Every ray through an opening meets light. So the irradiance of a sensor before the wall is the form factor
+// of the wall's openings, in closed form.
 
 namespace patchlight::openings_test {
 namespace {
 
 using namespace test;
 
-// A wall, seen from x > 0, and what is left open.
+// A wall, seen from x > 0, and its openings.
 struct Wall {
   std::vector<Quad> parts;
   std::vector<Quad> openings;
@@ -29,7 +29,7 @@ Quad upright(double y0, double y1, double z0, double z1) {
   return {Point(0, y0, z0), Point(0, y1, z0), Point(0, y1, z1), Point(0, y0, z1)};
 }
 
-// Level slits, one in the middle of each of `count` strips.
+// Horizontal slits, one in the middle of each of `count` strips.
 Wall slits(int count, double open) {
   Wall wall;
   const double strip = 2.0 / count;
@@ -63,7 +63,7 @@ Wall perforated(int count, double open) {
   return wall;
 }
 
-// Sensors before the wall that face it, face up, and look askew.
+// Sensors before the wall that face it, face up, or face obliquely.
 std::vector<Sensor> sensors_before_wall() {
   return {{Point(1, 0.1, 0.9), -Vector::UnitX()},
           {Point(0.4, -0.3, 0.2), Vector::UnitZ()},
@@ -92,7 +92,7 @@ std::vector<Case> cases() {
           {"perforated, 10 %, turned, a thousandth as large", perforated(10, 0.1), turned(1e-3)}};
 }
 
-// The room with that wall, moved, and the light in it.
+// The room with that wall, after a motion, and its light.
 struct Lit {
   Scene scene;
   PatchMesh mesh;
@@ -101,7 +101,7 @@ struct Lit {
   std::vector<double> exact;  // irradiance of each sensor
 };
 
-// The radiosity has a step where the wall stands, so that patches are even here (GatherOptions::slopes).
+// The radiosity has a step at the wall, so the patches have constant radiosity here (GatherOptions::slopes).
 Lit lit_by(const Case& c) {
   Lit lit;
   lit.scene = with_box(empty_scene({grey(0), grey(0)}), Point(-2, -1, 0), Point(2, 1, 2), true);
@@ -131,7 +131,7 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsIsTheirFormFactor) {
         gather_irradiance(lit.mesh, lit.radiosity, occluder, lit.sensors, {.seed = 3, .slopes = false});
     for (std::size_t k = 0; k < lit.sensors.size(); ++k) {
       const double E = found.irradiance(static_cast<Eigen::Index>(k), 0);
-      // Of 24 sensors one in fifteen runs would have one beyond three standard errors; the seed is fixed.
+      // One of 24 sensors would exceed three standard errors in one of fifteen runs. The seed is fixed.
       EXPECT_NEAR(E, lit.exact[k], 3 * found.errors.rays(static_cast<Eigen::Index>(k), 0)) << c.name << ' ' << k;
       EXPECT_NEAR(E, lit.exact[k], 0.05 * lit.exact[k]) << c.name << ' ' << k;
     }
@@ -139,7 +139,7 @@ TEST(GatherIrradiance, ThroughNarrowOpeningsIsTheirFormFactor) {
 }
 
 // One in ten thousand rays gets through, so every second sensor sees nothing by its first rays. It then gets thirty
-// times as many, of which about ten get through.
+// times as many rays, of which about ten get through.
 TEST(GatherIrradiance, ThatSeesNothingAtFirstTakesMoreRays) {
   for (const Case& c :
        {Case{"holes", perforated(10, 1e-4)}, {"holes, turned, in mm", perforated(10, 1e-4), turned(1e3)}}) {
@@ -162,8 +162,8 @@ TEST(GatherIrradiance, ThatSeesNothingAtFirstTakesMoreRays) {
   }
 }
 
-// Over many seeds the errors have no common sign and the size that is stated: with n of them their mean over the
-// standard error is 0 +- 1 / sqrt(n), and its root mean square 1 +- 1 / sqrt(2 n).
+// Over many seeds the errors have no common sign and the stated size. For n errors, their mean over the standard error
+// is 0 +- 1 / sqrt(n), and the root mean square is 1 +- 1 / sqrt(2 n).
 TEST(GatherIrradiance, ThroughNarrowOpeningsErrsAsItStates) {
   for (const Case& c : cases()) {
     const Lit lit = lit_by(c);

@@ -34,9 +34,9 @@ Field gathered(const Scene& scene, const PatchMesh& mesh, const Field& radiosity
   return gather_irradiance(mesh, radiosity, occluder, sensors).irradiance;
 }
 
-// A desk in a room whose walls have a radiosity of 1 and whose desk has one of 100, on both sides. A flat sheet does
-// not see itself: sensors that lie on it and face along it read 1, on whichever side rounding leaves them. As written
-// files do, these coordinates are rounded to a millionth of the desk.
+// A desk of radiosity 100 on both sides stands in a room whose walls have radiosity 1. A flat sheet does not see
+// itself: sensors on it that face along it read 1, on either side of the rounded plane. The coordinates are rounded to
+// a millionth of the desk, like those in files.
 TEST(PlaceSensors, OnATurnedSheetDoNotSeeIt) {
   for (const double scale : {1.0, 1e-3, 25.4e-3}) {
     for (const double degrees : {0.0, 7.0, 20.0, 33.0, 45.0, 71.0}) {
@@ -64,8 +64,8 @@ TEST(PlaceSensors, OnATurnedSheetDoNotSeeIt) {
   }
 }
 
-// A sensor on a sheet that is turned against it gets light from before the sheet alone, and sees that side of it: with
-// an angle a between both, (1 - cos a) / 2 of what it reads comes from the sheet, large enough to be a plane.
+// A sensor on a sheet, at an angle a to it, receives light only from the side of the sheet that it faces. It sees that
+// side: (1 - cos a) / 2 of its reading comes from the sheet, which is large enough to count as a plane.
 TEST(PlaceSensors, AskewOnASheetSeeTheSideTheyFace) {
   Scene scene = with_box(empty_scene({grey(0), grey(0)}), Point(-5, -5, -5), Point(5, 5, 5), true);
   scene = with_quad(std::move(scene), {Point(-5, -5, 0), Point(5, -5, 0), Point(5, 5, 0), Point(-5, 5, 0)}, 1);
@@ -78,12 +78,13 @@ TEST(PlaceSensors, AskewOnASheetSeeTheSideTheyFace) {
     radiosity(i, 0) = sheet ? (mesh.side[i] == Side::front ? 3 : 1000) : (mesh.centroid[i].z() > 0 ? 1 : 1000);
   }
   const double of_sheet = (1 - std::cos(angle)) / 2;
-  // From 1e-5 of its size above the sheet, 1e-4 m, the horizon is lower by 1e-4 / 5.
+  // 1e-4 m above the sheet, 1e-5 of its size, the horizon is lower by 1e-4 / 5.
   EXPECT_NEAR(gathered(scene, mesh, radiosity)(0, 0), (1 - of_sheet) + 3 * of_sheet, 1e-4);
 }
 
-// A room of 6 x 3 x 2.5 m with a wall across it, 0.2 m thick, from x = 3: two faces with a door between them, its jambs
-// and lintel. What touches floor, ceiling and side walls is left out, so that the wall is no closed solid.
+// A room of 6 x 3 x 2.5 m with a wall across it, 0.2 m thick, from x = 3. The wall has two faces with a door between
+// them, its jambs and its lintel. Faces that would touch floor, ceiling or side walls are missing, so the wall is not a
+// closed solid.
 Scene divided_room(double lamp) {
   Scene scene = with_box(empty_scene({grey(0.5), grey(0, lamp)}), Point(0, 0, 0), Point(6, 3, 2.5), true);
   const auto outline = [](double x) {
@@ -120,8 +121,8 @@ TEST(PlaceSensors, InsideAWallThatStandsOpenOnTheFloorAreFound) {
   }
 }
 
-// A room that is drawn with its fronts outward and a floor of its own stands on that floor as a wall does: light makes
-// the difference, be it of a lamp in it or through a hole.
+// A room whose fronts face outward, with a floor of its own, stands on that floor like a wall. Light makes the
+// difference: from a lamp in it or through a hole.
 TEST(PlaceSensors, InALitRoomThatIsTurnedInsideOutAreFree) {
   for (const bool with_hole : {false, true}) {
     Scene scene = empty_scene({grey(0.5), grey(0, 1)});

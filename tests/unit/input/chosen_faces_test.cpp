@@ -56,7 +56,7 @@ TEST_F(ChosenFaces, RefuseNamesOfNothing) {
   EXPECT_NE(refused({}, {"*"}).find("no face remains"), std::string::npos);
 }
 
-// In a scene file for one model of several.
+// A scene file names one of several models.
 TEST_F(ChosenFaces, OfOneModelOfASceneFile) {
   const Scene scene =
       read_scene(write("two.toml",
@@ -65,7 +65,7 @@ TEST_F(ChosenFaces, OfOneModelOfASceneFile) {
   EXPECT_EQ(names_of(scene), (std::vector<std::string>{"floor", "ceiling"}));
 }
 
-// What faces of an object get is theirs alone, though others have the same material.
+// Settings for faces of an object apply only to that object, though others have the same material.
 TEST_F(ChosenFaces, GetMaterialsOfTheirOwn) {
   const Scene scene =
       read_scene(write("of.toml",

@@ -1,4 +1,4 @@
-// Pictures of COLLADA files lie where those of the same square in OBJ do.
+// Textures of COLLADA files have the same positions as those of the same square in OBJ.
 #include "light/texture.h"
 #include "model_files.h"
 
@@ -17,7 +17,7 @@ const Spectrum white = rgb(1, 1, 1);
 
 class ColladaPictures : public ModelFiles {
  protected:
-  // A square whose corner k lies at place places[k] of (0 0, 1 0, 1 1, 0 1) in the picture, v upwards.
+  // A square whose corner k lies at places[k] of (0 0, 1 0, 1 1, 0 1) in the texture, with v upwards.
   std::filesystem::path square(const std::string& places, const std::string& picture = "four.png",
                                const std::string& sampler = "", const std::string& node = "",
                                const std::string& effect = "") {
@@ -63,7 +63,7 @@ class ColladaPictures : public ModelFiles {
   }
 };
 
-// What is seen at a point of the first polygon.
+// The reflectance at a point of the first polygon.
 Spectrum seen_at(const Scene& scene, const Point& point) {
   const Material& material = scene.materials[scene.polygons[0].material];
   const TextureMap* map = texture_map_on(scene, scene.polygons[0], Side::front);
@@ -85,7 +85,7 @@ TEST_F(ColladaPictures, LieWhereTheirCoordinatesSay) {
   expect_corners(read_scene(square("1032")), {green, red, white, blue});
 }
 
-// v is upwards in both formats.
+// v points up in both formats.
 TEST_F(ColladaPictures, LieAsThoseOfObjDo) {
   write("m.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd four.png\n");
   const std::string head =
@@ -100,7 +100,7 @@ TEST_F(ColladaPictures, LieAsThoseOfObjDo) {
   }
 }
 
-// A node that mirrors x: the picture is seen the other way round, and the front stays where it was.
+// A node that mirrors x: the texture is mirrored, and the front stays on the same side.
 TEST_F(ColladaPictures, GoWithTheirNodes) {
   const Scene mirrored =
       read_scene(square("0123", "four.png", "", "<matrix>-1 0 0 3 0 1 0 2 0 0 1 0 0 0 0 1</matrix>"));

@@ -40,7 +40,7 @@ void expect_same(const Scene& found, const Scene& expected) {
   EXPECT_TRUE(found.photometric);
 }
 
-// What a scene file says in its words.
+// The settings of a scene file in the words of its keys.
 TEST_F(Daylight, IsThatOfASceneFile) {
   DaylightSetting overcast;
   overcast.sky = SkyKind::cie_overcast;
@@ -91,7 +91,7 @@ TEST_F(Daylight, IsRefusedWhereItsPartsDoNotFit) {
   EXPECT_NE(refusal_of(below).find("below the horizon"), std::string::npos);
 }
 
-// One sky is meant: a scene file's own is not replaced without a word.
+// There is one sky: a setting beside the scene file replaces the file's sky.
 TEST_F(Daylight, BesideTheFileTakesThePlaceOfItsOwn) {
   const auto file = write("sky.toml", room + "[sky]\nkind = \"overcast\"\nilluminance = 8000\n");
   ReadOptions options;

@@ -21,7 +21,7 @@ class RoomIn : public Formats {
  protected:
   static constexpr double max_edge = 0.57;  // no edge is a multiple of it, so rounding does not change the patches
 
-  // The room in one format, with the lamp beside it in OBJ.
+  // The room in one format, and the lamp in OBJ.
   Scene read(const std::filesystem::path& file) const {
     write("lamp.mtl", test::lamp_mtl);
     const std::vector<std::filesystem::path> files = {file, write("lamp.obj", test::lamp_obj)};
@@ -40,7 +40,7 @@ class RoomIn : public Formats {
     if (found.rows() != expected.rows()) return Field::Ones(1, 1);
     return (found - expected).abs() / expected.mean();
   }
-  // The same as one number: the norm of the difference over the norm of the irradiance, both by area.
+  // The same as one number: the area-weighted norm of the difference over that of the irradiance.
   double relative_difference(const std::filesystem::path& file) const {
     Request request;
     request.mesh.max_edge = max_edge;
@@ -55,12 +55,12 @@ class RoomIn : public Formats {
   }
 };
 
-// Coordinates in single precision are right to 6e-8 of themselves; angles, form factors and with them irradiance change
-// by a small multiple of that. Of a million shadow rays, one or two then pass an edge on its other side: that changes
-// the form factor of one pair of 91,000 by 1/16: single patches by up to a few 1e-3, the norm by less than 1e-4.
+// Coordinates in single precision have a relative error of 6e-8. Angles, form factors and irradiance change by a small
+// multiple of that. One or two of a million shadow rays then pass an edge on the other side. That changes the form
+// factor of one of 91,000 pairs by 1/16. Single patches change by up to a few 1e-3, the norm by less than 1e-4.
 constexpr double float_tolerance = 1e-4;
 
-// Formats in decimal digits give the same coordinates to the bit.
+// Formats with decimal digits give the same coordinates to the bit.
 constexpr double double_tolerance = 1e-6;
 
 TEST_F(RoomIn, PlyHasTheSameIrradiance) {
@@ -106,7 +106,7 @@ TEST_F(RoomIn, OneObjWithBothHasTheSameIrradianceAsTwo) {
 
 TEST_F(RoomIn, MixedFilesAllTakePart) {
   const Scene scene = read(write("room.ply", test::as_ply(test::room())));
-  EXPECT_EQ(scene.polygons.size(), 13U);  // triangles of one plane are one polygon
+  EXPECT_EQ(scene.polygons.size(), 13U);  // coplanar triangles are one polygon
   EXPECT_EQ(scene.files.size(), 2U);
   EXPECT_EQ(scene.polygons.front().file, 0U);
   EXPECT_EQ(scene.polygons.back().file, 1U);
@@ -116,8 +116,8 @@ TEST_F(RoomIn, MixedFilesAllTakePart) {
 
 TEST_F(Formats, UnitsThatAFileStatesAreMetres) {
   const Box expected(Point(0, 0, 0), Point(3, 2.4, 2.1));
-  for (const auto& file : {write("room.dae", test::as_collada(test::room())),  // centimetres
-                           write("room.ifc", test::as_ifc(test::room()))}) {   // millimetres
+  for (const auto& file : {write("room.dae", test::as_collada(test::room())),  // centimeters
+                           write("room.ifc", test::as_ifc(test::room()))}) {   // millimeters
     const Box found = bounds(read_scene(file));
     EXPECT_LT((found.min() - expected.min()).norm(), 1e-6) << file;
     EXPECT_LT((found.max() - expected.max()).norm(), 1e-6) << file;
@@ -250,7 +250,7 @@ TEST_F(Formats, GltfNodesMoveAndMirror) {
                                                 R"("rotation": [0, 0, 0.7071067811865476, 0.7071067811865476])",
                                                 grey_surface)),
                  options);
-  // First scaled to x in [-6, 0], then turned by 90 degrees about z: (x, y) to (-y, x), then moved.
+  // First scaled to x in [-6, 0], then rotated by 90 degrees about z: (x, y) to (-y, x), then moved.
   EXPECT_TRUE(bounds(scene).isApprox(Box(Point(7.6, 14, 30), Point(10, 20, 32.1)), 1e-6));
   // The mirrored room still faces inward: the signed volume (1/3) sum p . A keeps its sign.
   double volume = 0;
@@ -262,7 +262,7 @@ TEST_F(Formats, GltfNodesMoveAndMirror) {
 }
 
 TEST_F(Formats, GltfTexturesAreReplacedByTheirMean) {
-  // A PNG of two pixels, black and white: the mean is 0.5 in linear light, whatever the encoding in between.
+  // A PNG of two pixels, black and white: the mean is 0.5 in linear light for any encoding of the values.
   constexpr const char* image =
       "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGNg+A8AAQIBAEK+vGgAAAAASUVORK5CYII=";
   std::string json = test::gltf_json(
@@ -333,7 +333,7 @@ TEST_F(Formats, GltfNestedDeeperThanTheStackIsRefused) {
 }
 
 TEST_F(Formats, AGltfNodeIsInTheTreeOnce) {
-  // Each of 60 nodes twice below the one before would be 2^60; and a node below itself.
+  // Each of 60 nodes includes the previous one twice, which gives 2^60. Another node is its own descendant.
   std::string nodes;
   for (int k = 1; k < 60; ++k) nodes += R"({"children": [)" + std::to_string(k) + ", " + std::to_string(k) + "]}, ";
   for (const std::string& tree : {nodes + "{}", std::string(R"({"children": [0]})")}) {
@@ -352,7 +352,7 @@ TEST_F(Formats, TheFormatCanBeGiven) {
 
 TEST_F(Formats, EqualMaterialsOfSeveralFilesAreShared) {
   const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  const std::string above = "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";  // coincident faces would become one
+  const std::string above = "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";  // coincident faces would be merged
   write("a.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl floor\nKd .1 .1 .1\n");
   write("b.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl floor\nKd .2 .2 .2\n");
   const std::string faces = "usemtl wall\nf 1 2 3\nusemtl floor\nf 1 3 4\n";

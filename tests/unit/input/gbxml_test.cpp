@@ -33,12 +33,12 @@ std::string opening(const std::string& kind, const std::string& name, const std:
          "</PlanarGeometry></Opening>\n";
 }
 
-const std::vector<Point> floor_corners = {{0, 0, 0}, {0, 3, 0}, {4, 3, 0}, {4, 0, 0}};  // its front looks down
+const std::vector<Point> floor_corners = {{0, 0, 0}, {0, 3, 0}, {4, 3, 0}, {4, 0, 0}};  // its front faces down
 const std::vector<Point> wall_corners = {{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0, 0, 3}};
 const std::vector<Point> window_corners = {{1, 0, 1}, {2, 0, 1}, {2, 0, 2}, {1, 0, 2}};
 const std::vector<Point> door_corners = {{3, 0, 0}, {3.5, 0, 0}, {3.5, 0, 2}, {3, 0, 2}};
 
-// Of one room of 4 x 3 m with a floor and a wall that has a window and a door.
+// The model is one room of 4 x 3 m with a floor and a wall that has a window and a door.
 std::string building(const std::string& unit = "Meters", const std::string& more = "") {
   return "<?xml version=\"1.0\"?>\n<gbXML lengthUnit=\"" + unit +
          "\" xmlns=\"http://www.gbxml.org/schema\">\n<Campus id=\"c\"><Building id=\"b\"><BuildingStorey "
@@ -130,7 +130,7 @@ TEST_F(Gbxml, Utf16IsReadAsUtf8Is) {
   }
 }
 
-// The top of what lies level is a floor, its underside a ceiling; the front of this one looks down.
+// The top of a horizontal face is a floor, its underside a ceiling. The front of this one faces down.
 TEST_F(Gbxml, SidesHaveTheReflectancesOfTheirKind) {
   const Scene scene = read(building());
   const Polygon& floor = scene.polygons.at(named(scene, "floor"));
@@ -175,7 +175,7 @@ TEST_F(Gbxml, WhatCannotBeReadIsRefusedWithItsLine) {
   }
 }
 
-// An outline of 4 x 3 m, whatever way the openings run.
+// An outline of 4 x 3 m, for openings of either orientation.
 TEST(WithoutOpenings, NotchesAndHolesTakeTheirAreas) {
   const auto rectangle = [](double x, double z, double width, double height) {
     return std::vector<Point>{{x, 0, z}, {x, 0, z + height}, {x + width, 0, z + height}, {x + width, 0, z}};

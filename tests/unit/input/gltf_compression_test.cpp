@@ -12,7 +12,7 @@
 namespace patchlight::gltf_compression_test {
 namespace {
 
-// A room of 3 x 2.4 x 2.1 m, whose parts are packed by the libraries that are to unpack them.
+// A room of 3 x 2.4 x 2.1 m. The libraries that unpack its parts also pack them here.
 class GltfCompression : public ModelFiles {
  protected:
   static std::string glb(std::string json, std::string binary) {
@@ -41,7 +41,7 @@ const test::Triangles& room() {
   return triangles;
 }
 
-// The area and the volume within, whether or not triangles of one plane are joined.
+// Area and volume, whether or not coplanar triangles are joined.
 void expect_room(const Scene& scene) {
   double area = 0;
   double volume = 0;

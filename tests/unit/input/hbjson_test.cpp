@@ -7,7 +7,7 @@
 namespace patchlight::hbjson_test {
 namespace {
 
-// A quadrilateral as honeybee writes it, with more keys behind.
+// A quadrilateral in honeybee's format, followed by more keys.
 std::string face(const std::string& type, const std::string& name, const std::string& corners,
                  const std::string& more) {
   return R"({"type": ")" + type + R"(", "identifier": ")" + name + R"(", "geometry": {"type": "Face3D", "boundary": )" +
@@ -20,7 +20,7 @@ std::string modifier(const std::string& name) {
 
 const std::string outdoors = R"(, "boundary_condition": {"type": "Outdoors"})";
 
-// A room of 4 m x 3 m x 3 m without walls but one, in cm; the wall, at y = 0, has a window of 2 m x 1 m.
+// A room of 4 m x 3 m x 3 m in cm, with one wall only. The wall at y = 0 has a window of 2 m x 1 m.
 std::string room(const std::string& floor_modifier) {
   const std::string window =
       face("Aperture", "window", "[[100,0,100],[300,0,100],[300,0,200],[100,0,200]]", outdoors + modifier("clear"));
@@ -86,7 +86,7 @@ TEST_F(Honeybee, SensorsAndViewsComeAlong) {
   EXPECT_EQ(scene.cameras[0].vertical_field_of_view, 70);
 }
 
-// Glass of transmissivity t lets t (1 - r)^2 / (1 - r^2 t^2) through, with r = (.52 / 2.52)^2.
+// Glass of transmissivity t transmits t (1 - r)^2 / (1 - r^2 t^2), with r = (0.52 / 2.52)^2.
 TEST_F(Honeybee, ModifiersBecomeMaterials) {
   const Scene glass = with("");
   const double r = std::pow(0.52 / 2.52, 2);
@@ -101,7 +101,7 @@ TEST_F(Honeybee, ModifiersBecomeMaterials) {
   EXPECT_NEAR(material_of(glow, "floor").exitance[1], 2 * std::numbers::pi, 1e-12);
 }
 
-// What stands outdoors has the exterior modifier of its room's set; null counts as absent.
+// Faces outdoors have the exterior modifier of their room's set. Null counts as absent.
 TEST_F(Honeybee, ModifierSetsAreThoseOfRooms) {
   std::string text = room("");
   const auto replace = [&](const std::string& from, const std::string& to) {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-// IFC files with boxes written in several ways. Lengths are those of the file's unit.
+// IFC files with boxes, written in several ways. Lengths are in the file's unit.
 namespace patchlight::test {
 
-/// How a body is written.
+/// Representation of a body.
 enum class IfcWay { upward, across, brep, triangulated, polygonal, clipped, mapped };
 
 /// Entities of an IFC file with a project, a building, one storey and no elements at first.
@@ -48,7 +48,7 @@ class IfcFile {
     return add("IFCPOLYLINE((" + list + list.substr(0, list.find(',')) + "))");
   }
 
-  /// A profile in the plane of x and z, extruded from `y` on over `depth` against z x x, which is y.
+  /// A profile in the plane of x and z, extruded from `y` over `depth` against z x x, which is y.
   std::string across(const std::string& profile, double y, double depth) {
     const std::string place = add("IFCAXIS2PLACEMENT3D(" + point(Point(0, y + depth, 0)) + "," + direction(0, -1, 0) +
                                   "," + direction(1, 0, 0) + ")");
@@ -79,7 +79,7 @@ class IfcFile {
     return add("IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$," + outline(corners) + ")");
   }
 
-  /// An element of one body: its number.
+  /// Returns the number of an element of one body.
   std::string element(const std::string& kind, const std::string& name, const std::string& body) {
     const bool is_old = schema_ == "IFC2X3";
     const std::string tail = kind == "IFCWINDOW" ? (is_old ? ",$,$,$" : ",$,$,$,$,$,$") : is_old ? ",$" : ",$,$";
@@ -102,7 +102,7 @@ class IfcFile {
     add("IFCRELAGGREGATES('" + identifier() + "',$,$,$," + storey_ + ",(" + number + "))");
   }
 
-  /// A surface style; `transparency` as the file has it.
+  /// A surface style with the file's value of `transparency`.
   std::string style(const std::string& name, const std::string& color, const std::string& transparency) {
     const std::string rendering = add("IFCSURFACESTYLERENDERING(" + add("IFCCOLOURRGB($," + color + ")") + "," +
                                       transparency + ",$,$,$,$,$,$,.FLAT.)");

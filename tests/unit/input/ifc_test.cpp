@@ -26,7 +26,7 @@ struct Solid {
   double volume = 0;
 };
 
-// By the names of groups without class and identifier.
+// Keys are the groups' names without class and identifier.
 std::map<std::string, Solid> solids_of(const Scene& scene) {
   std::map<std::string, Solid> solids;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
@@ -61,8 +61,8 @@ void expect_solid(const Solid& found, const Solid& expected, const std::string& 
   EXPECT_NEAR(found.volume, expected.volume, 2e-6 * expected.volume) << name;
 }
 
-// Openings with and without something of their length beyond the wall, whose area is known, in walls and openings of
-// each way to write them.
+// The area is known for openings inside the wall's thickness and beyond it. All representations of walls and openings
+// are combined.
 TEST_F(Ifc, OpeningsAreCutHoweverWallsAndOpeningsAreWritten) {
   for (const std::string schema : {"IFC4", "IFC2X3"}) {
     IfcFile file(schema);
@@ -86,7 +86,7 @@ TEST_F(Ifc, OpeningsAreCutHoweverWallsAndOpeningsAreWritten) {
   }
 }
 
-// A door that begins at the foot of the wall takes its sill from the wall.
+// A door that starts at the foot of the wall removes its sill from the wall.
 TEST_F(Ifc, DoorsAreCutOutOfTheEdgeOfAWall) {
   IfcFile file;
   const std::string wall = file.element("IFCWALL", "wall", file.box(wall_at(0), IfcWay::upward));
@@ -94,7 +94,7 @@ TEST_F(Ifc, DoorsAreCutOutOfTheEdgeOfAWall) {
   expect_solid(solids_of(read_scene(write("door.ifc", file.text())))["wall"], wall_with_openings(2, 4), "door");
 }
 
-// Twelve windows in three rows: one wall, not twelve.
+// Twelve windows in three rows give one wall, not twelve.
 TEST_F(Ifc, WallsWithRowsOfWindowsKeepTheirArea) {
   IfcFile file;
   const std::string wall = file.element("IFCWALL", "wall", file.box(wall_at(0), IfcWay::upward));
@@ -104,7 +104,7 @@ TEST_F(Ifc, WallsWithRowsOfWindowsKeepTheirArea) {
                "rows");
 }
 
-// Profiles with voids, as frames of windows have them: polygons and a circle of 0.5 m, which becomes a polygon.
+// Profiles with voids, like those of window frames: polygons and a circle of 0.5 m, which becomes a polygon.
 TEST_F(Ifc, VoidsOfProfilesAreCut) {
   IfcFile file;
   const std::string outline = file.outline({{0, 0}, {5000, 0}, {5000, 3000}, {0, 3000}});
@@ -140,7 +140,7 @@ TEST_F(Ifc, LengthsAreMetresWhateverTheUnit) {
   }
 }
 
-// Rooms have name and long name, with all letters, and the storey; their bodies are no faces.
+// Rooms have a name and a long name with all their letters, and a storey. Their bodies are no faces.
 TEST_F(Ifc, SpacesAreRoomsWithLongNames) {
   IfcFile file;
   const auto body = [&](double x) { return file.box({Point(x, 0, 0), Point(x + 4000, 3000, 2500)}, IfcWay::upward); };
@@ -162,7 +162,7 @@ TEST_F(Ifc, SpacesAreRoomsWithLongNames) {
   EXPECT_EQ(scene.polygons.size(), 6U);
 }
 
-// A style of the body, one of the material, and none: the grey that other formats have.
+// A style of the body, a style of the material, and none, which gives the same gray as in other formats.
 TEST_F(Ifc, StylesOfBodiesAndMaterialsAreFound) {
   IfcFile file;
   const auto body = [&](double y) { return file.box(wall_at(y), IfcWay::upward); };
@@ -186,8 +186,8 @@ TEST_F(Ifc, StylesOfBodiesAndMaterialsAreFound) {
   EXPECT_EQ(materials.at("paint").transmittance.size(), 0);
 }
 
-// True north at 30 degrees from y towards x: a sun in the south at 45 degrees shines from there. A model that is turned
-// takes its north along, and a scene file may state another one.
+// True north is 30 degrees from y towards x. A sun in the south at 45 degrees shines from there. A rotated model
+// rotates its north, and a scene file may override it.
 TEST_F(Ifc, AzimuthsAreFromTrueNorth) {
   IfcFile file("IFC4", "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)", "(1.,1.7320508075688772)");
   file.element("IFCSLAB", "slab", file.box({Point(1, 2, 3), Point(9, 8, 4)}, IfcWay::brep));
@@ -214,7 +214,7 @@ TEST_F(Ifc, ElementsWithoutFacesAreNamed) {
   EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U);
 }
 
-// Text that is no IFC file, parts of one and bytes of another value: a scene or one sentence that names the file.
+// Text that is not IFC, parts of a file and changed bytes give a scene or one sentence that names the file.
 TEST_F(Ifc, DamagedFilesAreReadOrRefused) {
   IfcFile file;
   const std::string wall = file.element("IFCWALL", "wall", file.box(wall_at(0), IfcWay::brep));

@@ -1,4 +1,4 @@
-// What readers leave out: counted by kind, and weighed by its area.
+// Omitted contents of model files, counted by kind and weighted by area.
 #include "input/left_out.h"
 
 #include "model_files.h"
@@ -30,7 +30,7 @@ Scene wall() {
   return scene;
 }
 
-// 1 % of the area of the model, which holds the wall and the faces left out.
+// 1 % of the area of the model, which includes the wall and the omitted faces.
 TEST_F(Losses, FacesOfMoreThanOnePercentOfTheAreaMakeResultsWrong) {
   const double limit = 0.01 / 0.99;
   for (const auto& [area, kind] : {std::pair(0.98 * limit, little), {1.02 * limit, much}}) {
@@ -59,7 +59,7 @@ TEST_F(Losses, WholeObjectsAndLightSourcesMakeResultsWrong) {
   EXPECT_EQ(number_of(scene, DiagnosticCode::simplified_part), 1U);
 }
 
-// In each format two sound faces and one with two corners, in one object.
+// Each format has two valid faces and one with two corners, in one object.
 TEST_F(Losses, FacesOfTwoCornersAreCounted) {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
@@ -114,7 +114,7 @@ TEST_F(Losses, LightsLinesAndSplinesOfColladaAreCounted) {
   EXPECT_EQ(number_of(scene, much), 2U) << "a light and a convex mesh";
 }
 
-// Both files have a sun; a scene has one.
+// Both files have a sun, but a scene has only one.
 TEST_F(Losses, TheSunOfASecondFileIsALoss) {
   const std::string sky = "void light sun_color\n0\n0\n3 1 1 1\nsun_color source sun\n0\n0\n4 0 0 1 0.5\n";
   const std::string plate = "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\ngrey polygon p\n0\n0\n9 0 0 0 1 0 0 1 1 0\n";

@@ -1,4 +1,4 @@
-// Surfaces that are there in part: alpha of pictures in glTF, map_d in OBJ.
+// Partly covered surfaces: alpha of textures in glTF, map_d in OBJ.
 #include "input/picture_colours.h"
 #include "model_files.h"
 #include "scene/specular_faces.h"
@@ -31,7 +31,7 @@ ReadOptions with(const std::vector<std::string>& settings) {
   return options;
 }
 
-// A pane of holes, which lets through the same share at all angles, and of all light.
+// A pane of holes, which transmits the same fraction at all angles and in all bands.
 void expect_holes(const Material& material, double covered, const Spectrum& reflectance) {
   expect_near(material.transmittance, Spectrum::Constant(3, 1 - covered));
   expect_near(material.reflectance, reflectance);
@@ -43,7 +43,7 @@ void expect_holes(const Material& material, double covered, const Spectrum& refl
 
 class GltfMasks : public ModelFiles {
  protected:
-  // A triangle of a material with the picture, and one of a plain one.
+  // A triangle of a material with the texture, and one of a plain material.
   Scene read(const Alpha& alpha, const std::string& mode, const std::string& factor = "[1,1,1,1]",
              const std::vector<std::string>& settings = {}) {
     return read_picture(four_pixels(alpha), mode, factor, settings);
@@ -82,18 +82,18 @@ TEST_F(GltfMasks, HalfOpaqueLetsHalfOfTheLightThrough) {
 }
 
 TEST_F(GltfMasks, TheCutoffDecidesWhichTexelsAreThere) {
-  const Alpha alpha = {51, 102, 153, 204};  // .2, .4, .6, .8
+  const Alpha alpha = {51, 102, 153, 204};  // 0.2, 0.4, 0.6, 0.8
   expect_holes(read(alpha, masked).materials[0], .5, rgb(0, .25, .25));
   const auto cut_off = [](const std::string& at) { return masked + R"("alphaCutoff":)" + at + ","; };
   expect_holes(read(alpha, cut_off("0.8")).materials[0], .25, rgb(0, 0, .25));
   expect_holes(read(alpha, cut_off("0.3")).materials[0], .75, rgb(.25, .25, .25));
-  // The factor's alpha times that of the texels: .1 to .4.
+  // The factor's alpha times that of the texels: 0.1 to 0.4.
   expect_holes(read(alpha, cut_off("0.15"), "[1,1,1,0.5]").materials[0], .75, rgb(.25, .25, .25));
 }
 
 TEST_F(GltfMasks, BlendedTexelsCoverTheirAlpha) {
   expect_holes(read({51, 102, 153, 204}, blended).materials[0], .5, rgb(.15, .15, .2));
-  // Times the factor, in colour and alpha.
+  // Times the factor, in color and alpha.
   expect_holes(read({51, 102, 153, 204}, blended, "[1,0.5,1,0.5]").materials[0], .25, rgb(.075, .0375, .1));
 }
 
@@ -107,7 +107,7 @@ TEST_F(GltfMasks, OpaquePicturesAndModesAreWhatTheyWere) {
   EXPECT_FALSE(any_contains(ignored.diagnostics, "cut out by pictures"));
 }
 
-// Shares of alphas that are added up after a division are off by rounding.
+// Fractions of alphas, added after a division, are inexact by rounding.
 TEST_F(GltfMasks, ThatAllTexelsReachAreNone) {
   std::string pixels;
   for (int k = 0; k < 11 * 13; ++k)
@@ -119,7 +119,7 @@ TEST_F(GltfMasks, ThatAllTexelsReachAreNone) {
   EXPECT_FALSE(any_contains(scene.diagnostics, "materials read as panes"));
 }
 
-// White of the share m reflects m, which is 1 - (1 - m) but for rounding.
+// White with the covered fraction m reflects m, which is 1 - (1 - m) to rounding.
 TEST_F(GltfMasks, OfWhiteReflectWhatTheyCover) {
   std::string pixels(4 * 10, '\xFF');
   for (std::size_t k = 1; k < 10; ++k) pixels[4 * k + 3] = '\0';
@@ -128,7 +128,7 @@ TEST_F(GltfMasks, OfWhiteReflectWhatTheyCover) {
   EXPECT_FALSE(any_contains(scene.diagnostics, "is lowered"));
 }
 
-// A lamp that is there by half emits half; taken for opaque it is there.
+// A lamp with half coverage emits half. An opaque one emits all.
 TEST_F(GltfMasks, OfLampsEmitByWhatTheyCover) {
   const std::string lamp = masked + R"("emissiveFactor":[1,0.5,0],)";
   const Alpha half = {255, 0, 255, 0};
@@ -141,7 +141,7 @@ TEST_F(GltfMasks, OfLampsEmitByWhatTheyCover) {
   expect_near(exitance({"leaves.transmittance=0", "leaves.radiance=7"}), std::numbers::pi * rgb(7, 7, 7));
 }
 
-// Also where it has been taken to bands of wavelengths before.
+// The same after a conversion to bands of wavelengths.
 TEST_F(GltfMasks, OfLampsAreThereAgainInBands) {
   read(Alpha{255, 0, 255, 0}, masked + R"("emissiveFactor":[1,1,1],)");
   const std::string bands = "[[model]]\nfile = \"leaves.gltf\"\n[spectra]\nbands = 4\n";
@@ -172,12 +172,12 @@ TEST_F(ObjMasks, AlphaOfTheColoursOwnPictureWeighsThem) {
 }
 
 TEST_F(ObjMasks, AGreyPictureCoversByItsNumbers) {
-  // Numbers, not colours: 0, .2, .6 and 1 without gamma.
+  // Linear numbers without gamma: 0, 0.2, 0.6 and 1.
   write("grey.png", png_of(2, 2, std::string("\0\0\0\x33\x33\x33\x99\x99\x99\xFF\xFF\xFF", 12)));
   expect_holes(read("Kd .8 .4 .2\nmap_d grey.png\n").materials[0], .45, .45 * rgb(.8, .4, .2));
 }
 
-// T = 1 - m + m (1 - d) Tf, and the index is the file's.
+// T = 1 - m + m (1 - d) Tf, with the index of the file.
 TEST_F(ObjMasks, AreTimesD) {
   write("four.png", four_pixels({255, 0, 255, 0}));
   const Material material = read("Kd .4 .4 .4\nd .6\nTf 1 1 .5\nNi 1.45\nmap_d four.png\n").materials[0];
@@ -193,7 +193,7 @@ TEST_F(ObjMasks, OfLampsEmitByWhatTheyCover) {
   expect_near(read(lamp, {"leaves.transmittance=0"}).materials[0].exitance, std::numbers::pi * rgb(1, 2, 3));
 }
 
-// Another channel, or other numbers than the picture's, would be other holes.
+// Another channel or changed numbers would give other holes.
 TEST_F(ObjMasks, WithOptionsThatChangeNumbersAreIgnored) {
   write("four.png", four_pixels({255, 0, 255, 0}));
   for (const char* options : {"-imfchan r", "-imfchan l", "-mm 0.1 0.5", "-mm 0 0.5"}) {

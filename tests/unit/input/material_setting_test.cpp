@@ -52,7 +52,7 @@ TEST(ParseMaterialSetting, RefusesEverythingElseNamingTheOption) {
   }
 }
 
-// What the message says of a setting that is refused.
+// The message about a rejected setting.
 std::string refusal_of(const std::string& text) {
   try {
     parse_material_setting(text);

@@ -11,8 +11,8 @@
 namespace patchlight::meshes_test {
 namespace {
 
-// Coordinates in the files are exact to half a tenth of a millimetre and areas are sums of a few of their products:
-// what is left is rounding.
+// Coordinates in the files are exact to 0.05 mm. Areas are sums of a few of their products, so the only error is
+// rounding.
 constexpr double rounding = 1e-12;
 
 Scene mesh(const std::string& name) { return read_scene(mesh_folder() / (name + ".obj")); }
@@ -40,8 +40,8 @@ TEST(Meshes, TheCornellBoxHasTheMeasuredSizes) {
   EXPECT_NEAR(upper, 0.5528 * 0.5592, rounding) << "the lamp fills the hole in the ceiling";
 }
 
-// The vector areas of a closed surface add up to zero; those of the Cornell box to that of its open front plus the
-// blocks' missing bottoms, and every polygon looks at the open front or away from a block.
+// The vector areas of a closed surface add up to zero. Those of the Cornell box add up to that of its open front plus
+// the missing bottoms of the blocks. Every polygon faces the open front or away from a block.
 TEST(Meshes, TheCornellBoxFacesItsInside) {
   const Scene scene = mesh("cornell_box");
   Vector room = Vector::Zero();
@@ -56,7 +56,7 @@ TEST(Meshes, TheCornellBoxFacesItsInside) {
 TEST(Meshes, TheFurnaceIsClosedAndItsRadiosityIsOne) {
   const Scene scene = mesh("furnace_cube");
   const Material& wall = scene.materials[0];
-  // B = E / (1 - rho); Ke has 17 digits and pi Ke is rounded once.
+  // B = E / (1 - rho). Ke has 17 digits, and pi Ke is rounded once.
   for (int band = 0; band < 3; ++band) EXPECT_NEAR(wall.exitance[band] / (1 - wall.reflectance[band]), 1, 1e-15);
   const KeptSides kept = kept_sides(scene, Sides::automatic);
   EXPECT_EQ(count(kept.front), 6);
@@ -99,8 +99,8 @@ TEST(Meshes, TheTwoRoomsAreOneClosedShellWithOneFloorUnderTheDividingWall) {
   EXPECT_NEAR(shell.norm(), 0, rounding);
 }
 
-// No furniture stands in a wall or in other furniture: the boxes of the groups, the shell and the wall aside, are
-// apart and inside the room they stand in.
+// No furniture intersects a wall or other furniture. Apart from the shell and the wall, the boxes of the groups are
+// disjoint and inside their room.
 TEST(Meshes, TheFurnitureOfTheTwoRoomsStandsFree) {
   const Scene scene = mesh("two_rooms");
   std::vector<Box> boxes(scene.groups.size());

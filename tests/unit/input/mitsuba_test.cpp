@@ -41,7 +41,7 @@ void expect_corners(const Scene& scene, PolygonIndex p, const std::vector<Point>
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_LT((found[k] - expected[k]).norm(), 1e-12) << k;
 }
 
-// Scaled to 4 x 6, then z turned up from y, then moved: x 8 to 12, y 20, z 27 to 33.
+// Scaled to 4 x 6, then z rotated up from y, then moved: x 8 to 12, y 20, z 27 to 33.
 TEST_F(Mitsuba, StepsOfATransformationApplyInTheirOrder) {
   const Scene scene =
       read(red +
@@ -56,7 +56,7 @@ TEST_F(Mitsuba, StepsOfATransformationApplyInTheirOrder) {
   EXPECT_TRUE(material.exitance.isApprox(pi * rgb(5, 6, 7)));
 }
 
-// The frame looks along +z: the front of a rectangle looks at the target.
+// The frame looks along +z: the front of a rectangle faces the target.
 TEST_F(Mitsuba, LookAtTurnsZToTheTarget) {
   const Scene scene = read(
       "<shape type=\"rectangle\"><transform name=\"to_world\"><lookat origin=\"0 0 0\" target=\"0, "
@@ -108,8 +108,8 @@ TEST_F(Mitsuba, AMirroredMeshKeepsItsFront) {
   EXPECT_EQ(scene.inputs.size(), 2U);
 }
 
-// 2 n / (n^2 + 1) goes through a pane of the index n that absorbs nothing; a metal of eta and k reflects
-// ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2).
+// A pane of index n that absorbs nothing transmits 2 n / (n^2 + 1). A metal of eta and k reflects ((eta - 1)^2 + k^2) /
+// ((eta + 1)^2 + k^2).
 TEST_F(Mitsuba, BsdfsBecomeMaterials) {
   const Material glass = material(
       "<bsdf type=\"thindielectric\"><float name=\"intIOR\" value=\"1.5\"/><float "
@@ -139,7 +139,7 @@ TEST_F(Mitsuba, BsdfsBecomeMaterials) {
   EXPECT_EQ(paper.diffuse_transmittance[0], .4);
 }
 
-// A colour of sRGB, IEC 61966-2-1; a spectrum that is even is white.
+// A color of sRGB by IEC 61966-2-1. A constant spectrum is white.
 TEST_F(Mitsuba, ColoursAreLinearRgb) {
   const auto colour = [&](const std::string& element) {
     return material("<bsdf type=\"diffuse\">" + element + "</bsdf>").reflectance;
@@ -163,7 +163,7 @@ TEST_F(Mitsuba, PicturesCountByTheirMean) {
   EXPECT_NEAR(painted.reflectance[2], std::pow((128 / 255. + .055) / 1.055, 2.4) / 2, 1e-12);
 }
 
-// Red light, beyond 600 nm, is more red than green, and has no blue; the three parts of a spectrum add up to it.
+// Red light beyond 600 nm has more red than green, and no blue. The three parts of a spectrum add up to it.
 TEST(RgbOfWavelengths, IsLinearAndTellsColoursApart) {
   using Samples = std::vector<std::pair<double, double>>;
   const Spectrum low = rgb_of_wavelengths(Samples{{380, 1}, {480, 1}, {480.001, 0}});
@@ -189,7 +189,7 @@ TEST_F(Mitsuba, EmittersWithoutSurfacesAreLights) {
                            centimetres);
   ASSERT_EQ(point.luminaires.size(), 1U);
   EXPECT_LT((point.luminaires[0].position - Point(1, 2, 3)).norm(), 1e-12);
-  // The irradiance at a place is that of the scene in its own unit: I / d^2.
+  // The irradiance at a point equals that of the scene in its own unit: I / d^2.
   EXPECT_NEAR(std::get<PointLight>(point.luminaires[0].light).intensity[0], 5, 1e-12);
   const Scene sun = read(shape +
                          "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-3\" z=\"-4\"/><rgb "
@@ -200,7 +200,7 @@ TEST_F(Mitsuba, EmittersWithoutSurfacesAreLights) {
   EXPECT_EQ(number_of(read(shape + "<emitter type=\"sunsky\"/>"), DiagnosticCode::left_out), 1U);
 }
 
-// Square to the view, 90 degrees across in 2 : 1: half of it up and down, 2 atan(1 / 2).
+// Perpendicular to the view, 90 degrees horizontally at 2 : 1. Half of it is vertical: 2 atan(1 / 2).
 TEST_F(Mitsuba, ASensorIsAView) {
   const Scene scene = read(
       "<shape type=\"rectangle\"/><sensor type=\"perspective\"><float name=\"fov\" value=\"90\"/><transform "

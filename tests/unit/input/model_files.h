@@ -14,7 +14,7 @@
 
 namespace patchlight {
 
-/// What InputError says when the file is read; fails when there is none.
+/// The message of InputError for this file. The test fails if the file can be read.
 inline std::string refusal(const std::filesystem::path& file, const ReadOptions& options = {}) {
   try {
     read_scene(file, options);
@@ -30,7 +30,7 @@ inline bool any_contains(const Diagnostics& diagnostics, const std::string& part
                      [&](const Diagnostic& found) { return found.text.find(part) != std::string::npos; });
 }
 
-/// How many things the diagnostics of a code count together.
+/// Sum of the counts in the diagnostics of a code.
 inline std::size_t number_of(const Scene& scene, DiagnosticCode code) {
   std::size_t number = 0;
   for (const Diagnostic& found : scene.diagnostics) number += found.code == code ? found.count : 0;
@@ -48,8 +48,8 @@ inline std::string two_pixels() {
   return bytes;
 }
 
-/// A PNG of 8 bits per channel, its pixels as red, green and blue, and alpha if there are four, row by row, in sRGB.
-/// PNG specification, sections 5 and 10, with blocks that are stored (RFC 1951, section 3.2.4).
+/// A PNG of 8 bits per channel in sRGB, row by row: red, green, blue, and alpha with four channels. PNG specification,
+/// sections 5 and 10, with stored blocks (RFC 1951, section 3.2.4).
 inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::string& pixels,
                           std::size_t channels = 3) {
   const auto number = [](std::uint32_t value) {
@@ -86,7 +86,7 @@ inline std::string png_of(std::uint32_t width, std::uint32_t height, const std::
          chunk("IEND");
 }
 
-/// A test with a folder of its own for small model files; it is removed afterwards.
+/// A test with its own folder for small model files, which is removed afterwards.
 class ModelFiles : public ::testing::Test {
  protected:
   ModelFiles() {

@@ -10,7 +10,7 @@ namespace {
 
 using Ring = std::vector<Point>;
 
-// Upright in the plane y = 0.
+// Vertical, in the plane y = 0.
 Ring rectangle(double x, double z, double width, double height) {
   return {{x, 0, z}, {x + width, 0, z}, {x + width, 0, z + height}, {x, 0, z + height}};
 }
@@ -28,7 +28,7 @@ double area_of(const Scene& scene, const std::string& object) {
   return sum;
 }
 
-// A wall of cells of 10 cm with windows that do not overlap; they may touch each other and the edge.
+// A wall of cells of 10 cm with windows that do not overlap. They may touch each other and the edge.
 struct RandomWall {
   int width = 0, height = 0;
   std::vector<std::array<int, 4>> windows = {};  // left, bottom, width, height
@@ -104,7 +104,7 @@ std::string gbxml_of(const RandomWall& wall) {
          loop_of(wall.outline()) + windows + "</Surface></Campus></gbXML>";
 }
 
-// The closed cells one by one.
+// The closed cells, one by one.
 std::string obj_of(const RandomWall& wall) {
   std::string text = "o wall\n";
   for (int x = 0; x < wall.width; ++x) {
@@ -148,19 +148,20 @@ TEST(WithoutOpenings, TakesManyAndNestedOpenings) {
   EXPECT_LT(cut.parts.size(), 400U);
 }
 
-// 2,000 windows along the lower edge of a wall: without cuts one part would have 8,004 corners.
+// 2,000 windows along the lower edge of a wall. Without cuts one part would have 8,004 corners.
 TEST(WithoutOpenings, BoundsTheCornersOfParts) {
   constexpr int count = 2000;
   std::vector<Ring> openings;
   for (int x = 0; x < count; ++x) openings.push_back(rectangle(x + 0.2, 0, 0.6, 1));
   const CutOutline cut = without_openings(rectangle(0, 0, count, 3), openings, 1e-3);
   EXPECT_NEAR(area_of(cut.parts) / (count * (3 - 0.6)), 1, 1e-6);
-  // At most 64 openings in a part with four corners each, and the part's own; at most two parts for 64 openings.
+  // A part has at most 64 openings with four corners each, plus its own corners. There are at most two parts per 64
+  // openings.
   for (const Ring& part : cut.parts) EXPECT_LE(part.size(), 4 * 64 + 4U);
   EXPECT_LE(cut.parts.size(), 2 * count / 64 + 1U);
 }
 
-// The plane is oblique: rounding leaves touching edges apart by 1e-16 m.
+// The plane is oblique: rounding separates touching edges by 1e-16 m.
 TEST(WithoutOpenings, TakesTouchingOpeningsInAnyPlane) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()).toRotationMatrix();
   const auto turned = [&](Ring ring) {
@@ -243,7 +244,7 @@ TEST_F(Openings, MeshesThatNameNoVertexAreRefused) {
             std::string::npos);
 }
 
-// A quad of half a metre, as glTF.
+// A quad of 0.5 m in glTF.
 std::string quad(bool double_sided) {
   return std::string(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
     "materials": [{"emissiveFactor": [1, 1, 1], "doubleSided": )") +

@@ -1,4 +1,4 @@
-// The same picture in every format that is read, and damaged ones of each.
+// The same picture in every supported format, and damaged files of each.
 #include "input/picture_colours.h"
 #include "light/texture.h"
 #include "model_files.h"
@@ -13,14 +13,14 @@ namespace {
 constexpr std::size_t width = 9;
 constexpr std::size_t height = 3;
 
-// 9 x 3 pixels of many colours, as red, green and blue from the top left.
+// 9 x 3 pixels of many colors, in the order red, green, blue from the top left.
 std::string many_colours() {
   std::string pixels;
   for (std::size_t k = 0; k < 3 * width * height; ++k) pixels += static_cast<char>(20 + k * 37 % 211);
   return pixels;
 }
 
-// A number of as many bytes, the least significant first.
+// A number in this many bytes, the least significant first.
 std::string little_endian(std::size_t value, std::size_t bytes) {
   std::string text;
   for (std::size_t k = 0; k < bytes; ++k, value >>= 8U) text += static_cast<char>(value & 0xFFU);
@@ -35,7 +35,8 @@ std::string turned_round(const std::string& pixels, std::size_t row) {
   return turned;
 }
 
-// The file header of 14 and the BITMAPINFOHEADER of 40 bytes; rows of whole words from below.
+// The file header of 14 bytes and the BITMAPINFOHEADER of 40 bytes. Rows are padded to whole words and start at the
+// bottom.
 std::string bmp_of(const std::string& pixels, bool downwards = false) {
   std::string rows;
   for (std::size_t k = 0; k < height; ++k) {
@@ -48,7 +49,8 @@ std::string bmp_of(const std::string& pixels, bool downwards = false) {
          little_endian(0, 4) + little_endian(rows.size(), 4) + little_endian(0, 16) + rows;
 }
 
-// Type 2, or 10 with a packet of single pixels for each row; rows from the top, which bit 5 of the last byte says.
+// Type 2, or type 10 with a packet of single pixels for each row. Bit 5 of the last byte means that rows start at the
+// top.
 std::string tga_of(const std::string& pixels, bool packed = false) {
   std::string bytes = little_endian(0, 2) + (packed ? "\x0A" : "\x02") + little_endian(0, 9) + little_endian(width, 2) +
                       little_endian(height, 2) + "\x18\x20";
@@ -68,8 +70,8 @@ std::string jpeg_of(std::size_t across, std::size_t down, const std::string& pix
   return bytes;
 }
 
-// Mantissas and exponent of three numbers: Ward 1991. A row in runs of single bytes, channel by channel, after 2 2 and
-// its length; or plainly.
+// Mantissas and exponent of three numbers: Ward 1991. A row is stored in runs of single bytes, channel by channel,
+// after 2 2 and its length, or without runs.
 std::string hdr_of(std::size_t across, std::size_t down, const std::vector<Rgb>& values, bool in_runs = false) {
   std::vector<std::string> codes;
   for (const Rgb& value : values) {
@@ -112,8 +114,8 @@ TEST(PictureFormats, BmpAndTgaHaveTheTexelsOfPng) {
   }
 }
 
-// A mantissa of eight bits is cut off, so that a value is off by up to 1/128 of the largest of the three, and stb_image
-// takes it as it is.
+// A mantissa of eight bits is truncated, so the error is up to 1/128 of the largest of the three. stb_image reads it
+// without a correction.
 TEST(PictureFormats, HdrHasLinearValuesWithoutGamma) {
   const DecodedPicture expected = as_png();
   for (const bool in_runs : {false, true}) {
@@ -130,7 +132,7 @@ TEST(PictureFormats, HdrHasLinearValuesWithoutGamma) {
   EXPECT_TRUE((*exact.mean == rgb(.75, .375, .0625)).all());
 }
 
-// Numbers above 1 are no reflectances, unless a factor makes them so.
+// Numbers above 1 are no reflectances, unless a factor reduces them.
 class HdrOfMaterials : public ModelFiles {};
 
 TEST_F(HdrOfMaterials, AreRefusedWhereTheyReflectMoreThanAll) {
@@ -150,7 +152,7 @@ TEST_F(HdrOfMaterials, AreRefusedWhereTheyReflectMoreThanAll) {
                   .all());
 }
 
-// Blocks of 8 x 8 pixels have one colour each; the finest quantisation leaves rounding in three steps, of up to a code
+// Blocks of 8 x 8 pixels have one color each. The finest quantization leaves rounding in three steps of up to one code
 // each.
 TEST(PictureFormats, JpegIsAsNearAsItsCodes) {
   const std::string colours("\xC0\x80\x40\x20\xA0\x60", 6);
@@ -217,7 +219,7 @@ TEST(PictureFormats, ThatAreNotReadAreRefusedWithThoseThatAre) {
     EXPECT_EQ(decoded_picture(bytes, 100).fault, "is neither PNG, JPEG, BMP, TGA nor Radiance HDR") << bytes;
 }
 
-// Of 32 bits a pixel, the fourth byte is alpha where the header says so.
+// The fourth byte of a 32-bit pixel is alpha if the header declares it.
 TEST(PictureFormats, AlphaOfTgaCountsWhereItIsOne) {
   const auto with = [](char descriptor) {
     return little_endian(0, 2) + "\x02" + little_endian(0, 9) + little_endian(2, 2) + little_endian(1, 2) + "\x20" +
@@ -230,7 +232,8 @@ TEST(PictureFormats, AlphaOfTgaCountsWhereItIsOne) {
   EXPECT_EQ(found.alpha->count[255], 1U);
 }
 
-// The fourth byte of BI_RGB has no meaning; BI_BITFIELDS of the BITMAPV4HEADER of 108 bytes says where alpha is.
+// The fourth byte of BI_RGB has no meaning. BI_BITFIELDS of the BITMAPV4HEADER of 108 bytes defines the position of
+// alpha.
 TEST(PictureFormats, AlphaOfBmpCountsWhereItIsOne) {
   const std::string pixels("\x10\x20\x30\0\x40\x50\x60\xFF", 8);
   const auto with = [&](std::size_t header, std::size_t compression, const std::string& rest) {
@@ -249,14 +252,14 @@ TEST(PictureFormats, AlphaOfBmpCountsWhereItIsOne) {
   EXPECT_EQ(found.alpha->count[255], 1U);
 }
 
-// stb_image has the old kind of runs, (1, 1, 1, length), for pixels.
+// stb_image reads the old kind of runs, (1, 1, 1, length), as pixels.
 TEST(PictureFormats, RunsOfHdrOfTheOldKindAreNamed) {
   const std::string bytes =
       "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 9\n" + std::string("\x80\x40\x20\x80\1\1\1\x11", 8);
   EXPECT_EQ(decoded_picture(bytes, 100).fault, "has old-style runs, or is cut off");
 }
 
-// A run of no length would be read for ever where the file ends.
+// A run of length zero would be read forever at the end of the file.
 TEST(PictureFormats, RunsOfHdrThatNeverEndAreCutOff) {
   const std::string endless = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n" + std::string("\2\2\0\x09", 4);
   EXPECT_EQ(decoded_picture(endless, 10).fault, "has old-style runs, or is cut off");

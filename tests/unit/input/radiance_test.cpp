@@ -31,7 +31,7 @@ void colorpict picture 7 red green blue wood.pic picture.cal u v 0 0
 picture plastic papered 0 0 5 .4 .4 .4 0 0
 void alias paint wall
 )";
-// Its front looks up.
+// Its front faces up.
 const std::string triangle = "lamp polygon triangle 0 0 9  0 0 0  1 0 0  0 2 0\n";
 
 std::string square(const std::string& material, double height) {
@@ -72,7 +72,7 @@ void expect_triangle(const Scene& scene, PolygonIndex p, const std::vector<Point
   for (std::size_t k = 0; k < 3; ++k) EXPECT_LT((found[k] - expected[k]).norm(), 1e-12) << k;
 }
 
-// Turned x to y and y to -x, then twice as large, then moved.
+// Rotated x to y and y to -x, then scaled by two, then moved.
 TEST_F(Radiance, StepsOfXformApplyInTheirOrder) {
   const Scene scene = scene_with("!xform -n moved -rz 90 -s 2 -t 10 0 0 \\\n part.rad\n");
   ASSERT_EQ(scene.polygons.size(), 1U);
@@ -92,7 +92,7 @@ TEST_F(Radiance, AMirroredCopyKeepsItsFrontAndTakesTheMaterialOfTheOuterXform) {
   EXPECT_LT(front_normal(scene, 1).z(), -0.999);
 }
 
-// Three in a row of two rows, all a metre up; then half a turn made of two quarters.
+// Two rows of three at a height of 1 m, then half a turn made of two quarters.
 TEST_F(Radiance, ArraysAndIterationsRepeatTheStepsBehindThem) {
   const Scene scene = scene_with("!xform -a 3 -t 1 0 0 -a 2 -t 0 10 0 -i 1 -t 0 0 1 part.rad\n" +
                                  std::string("!xform -i 2 -rz 90 -i 1 -t 0 0 5 part.rad\n"));
@@ -131,8 +131,8 @@ TEST_F(Radiance, MaterialsAreWhatTheReferenceManualSays) {
   EXPECT_TRUE((material("beam").exitance == 0).all());
 }
 
-// The manual gives the transmissivity of a transmittance T: (sqrt(.8402528435 + .0072522239 T^2) - .9166530661) /
-// .0036261119 / T, for the index 1.52; with its ten digits, divided by a difference of some 0.005 T, 1e-7 is left.
+// The manual gives the transmissivity for a transmittance T and the index 1.52: (sqrt(0.8402528435 + 0.0072522239 T^2)
+// - 0.9166530661) / 0.0036261119 / T. Its ten digits are divided by a difference of about 0.005 T, which leaves 1e-7.
 TEST_F(Radiance, TransmissivityOfGlassIsThatOfTheReferenceManual) {
   for (const double stated : {.05, .6, .88}) {
     const double transmissivity =
@@ -180,7 +180,7 @@ TEST_F(Radiance, RoundSurfacesKeepTheirAreas) {
   EXPECT_LT(front_normal(scene_with("wall ring a 0 0 8 0 0 1 0 0 -1 0 2\n"), 0).z(), -0.999);
 }
 
-// A wall of 4 x 3 m with a window of 1 x 1 m, joined by a seam that is walked twice.
+// A wall of 4 x 3 m with a window of 1 x 1 m, joined by a seam that the outline passes twice.
 TEST_F(Radiance, HolesAreJoinedBySeams) {
   const Scene scene =
       scene_with("wall polygon w 0 0 30 0 0 0 4 0 0 4 0 3 0 0 3 0 0 0  1 0 1 1 0 2 2 0 2 2 0 1 1 0 1\n");
@@ -188,7 +188,7 @@ TEST_F(Radiance, HolesAreJoinedBySeams) {
   EXPECT_NEAR(area_vector(corner_points(scene, 0)).norm(), 11, 1e-12);
 }
 
-// E = L pi sin^2(a / 2) for the .533 degrees that the sun has in Radiance.
+// E = L pi sin^2(a / 2) for 0.533 degrees, the diameter of the sun in Radiance.
 TEST_F(Radiance, ASmallSourceIsTheSun) {
   const std::string sun = "void light solar 0 0 3 1e6 2e6 3e6\nsolar source sun 0 0 4 0 3 4 .533\n";
   const Scene scene = scene_with(sun + square("wall", 0));
@@ -235,7 +235,7 @@ TEST_F(Radiance, WhatIsLeftOutIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "touched"));
 }
 
-// A box is closed, so its area vectors add up to nothing and its volume follows from the divergence theorem.
+// A box is closed: its area vectors add up to zero, and its volume follows from the divergence theorem.
 struct BoxFacts {
   double area = 0;
   double volume = 0;
@@ -269,8 +269,8 @@ TEST_F(Radiance, GenboxMakesAClosedBox) {
   }
 }
 
-// A bevel b takes from each edge, with length l between its corners, a prism of b^2 l / 2, and from each corner a cube
-// without the tetrahedron that stays of it: 5/6 b^3.
+// A bevel b removes a prism of b^2 l / 2 from each edge with length l between its corners. From each corner it removes
+// a cube without the remaining tetrahedron: 5/6 b^3.
 TEST_F(Radiance, GenboxBevelsEdges) {
   const double b = 0.1;
   const Scene scene = scene_with("!genbox wall crate 1 2 3 -b 0.1\n");
@@ -283,7 +283,7 @@ TEST_F(Radiance, GenboxBevelsEdges) {
   EXPECT_LT(box.sum.norm(), 1e-12);
 }
 
-// Six sides, twelve cylinders and eight spheres, as genbox prints them.
+// Six sides, twelve cylinders and eight spheres, as in the output of genbox.
 TEST_F(Radiance, GenboxRoundsEdges) {
   const Scene scene = scene_with("!genbox wall crate 1 2 3 -r 0.1\n");
   const double edges = 4 * (0.8 + 1.8 + 2.8);
@@ -301,7 +301,7 @@ TEST_F(Radiance, XformMovesWhatAPipeBringsIt) {
   EXPECT_EQ(scene_with("!xform part.rad|xform -t 0 0 9\n").polygons.size(), 1U);
 }
 
-// The last one of that name before the surface; below patterns there is the material.
+// The last definition of that name before the surface. The material lies below the patterns.
 TEST_F(Radiance, ADefinitionHoldsFromWhereItStands) {
   const Scene scene = scene_with(square("wall", 0) + "void plastic wall 0 0 5 .1 .1 .1 0 0\n" + square("wall", 1) +
                                  "wall texfunc bumps 4 a b c d 0 0\n" + square("bumps", 2));

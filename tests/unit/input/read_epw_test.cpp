@@ -29,7 +29,7 @@ std::string refusal(const Instant& time, const std::string& text = weather) {
 }
 
 TEST(ReadEpw, HasTheHourThatBeginsThen) {
-  // Hour 13 of the file is that from 12 to 13 o'clock, whose middle is 19:30 UTC.
+  // Hour 13 of the file is 12:00 to 13:00, whose middle is 19:30 UTC.
   const WeatherHour hour = parse_epw(weather, "place.epw", {2000, 10, 17, 12});
   EXPECT_EQ(hour.solar.direct_normal, 800);
   EXPECT_EQ(hour.solar.diffuse_horizontal, 120);
@@ -41,8 +41,8 @@ TEST(ReadEpw, HasTheHourThatBeginsThen) {
 }
 
 TEST(ReadEpw, SunStandsWhereItDoesInTheMiddleOfTheHour) {
-  // The published example of solar_position_test.cpp, half a minute later and in 1999 instead of 2003: the calendar's
-  // leap days make that less than 0.02 degrees.
+  // The published example of solar_position_test.cpp, half a minute later and in 1999 instead of 2003. Leap days make a
+  // difference of less than 0.02 degrees.
   const Daylight day =
       daylight_of(parse_epw(weather, "place.epw", {2000, 10, 17, 12}), Vector::UnitZ(), Vector::UnitY(), 1);
   ASSERT_TRUE(day.sun && day.sky);

@@ -15,7 +15,7 @@ constexpr double pi = std::numbers::pi;
 
 const LuminaireFrame down{-Vector::UnitZ(), Vector::UnitX()};
 
-// A file of the standard of 2002, one candela below; changed by the tests.
+// A file of the 2002 standard with one candela value below. The tests change it.
 std::string downlight() {
   return "IESNA:LM-63-2002\n"
          "[TEST] none\n"
@@ -66,7 +66,7 @@ TEST(ReadIes, KnowsRoundOpeningsByTheirSigns) {
   EXPECT_EQ(read("-0.1 1.2 -0.1").shape, OpeningShape::cylinder_by_length);
   EXPECT_EQ(read("1.2 -0.1 -0.1").shape, OpeningShape::cylinder_by_width);
   EXPECT_EQ(read("-0.5 0 -0.5").shape, OpeningShape::ellipsoid);
-  // LM-63-1995 states a circle by its diameter alone.
+  // LM-63-1995 states only the diameter of a circle.
   EXPECT_EQ(read("-0.5 0 0").shape, OpeningShape::upright_cylinder);
   EXPECT_EQ(read("-0.5 0 0").opening, Vector(0.5, 0.5, 0));
 }
@@ -90,7 +90,7 @@ TEST(ReadIes, KnowsFeetAndAbsolutePhotometry) {
 }
 
 TEST(ReadIes, TakesTheOldestFormAndNumbersInAnyLines) {
-  // LM-63-1986 has no first line of its own; numbers may be broken anywhere and separated by commas.
+  // LM-63-1986 has no first line of its own. Numbers may continue on any line, and commas may separate them.
   const PhotometricWeb web =
       parse_ies("a luminaire\r\nTILT=NONE\r\n1,100,1\r\n3 1 1 2\r\n0 0 0 1 1 12 0 45\r\n90 0 10,5,0\r\n", "old.ies");
   EXPECT_EQ(web.candela, (std::vector<double>{10, 5, 0}));
@@ -112,7 +112,8 @@ TEST(ReadIes, TiltIsTakenFromTheFile) {
 }
 
 TEST(ReadIes, FluxOfALambertianLuminaireIsItsLumens) {
-  // I = 1000 / pi cos v cd is 1000 lm; the chords of a table of 2.5 degrees are (2.5 degrees)^2 / 12 = 1.6e-4 too low.
+  // I = 1000 / pi cos v cd is 1000 lm. The chords of a table of 2.5 degrees are too low by (2.5 degrees)^2 / 12 =
+  // 1.6e-4.
   std::string text = "IESNA91\nTILT=NONE\n1 1000 1 37 1 1 2 0 0 0\n1 1 10\n";
   for (int k = 0; k <= 36; ++k) text += std::to_string(2.5 * k) + (k % 10 == 9 ? "\n" : " ");
   text += "\n0\n";
@@ -122,9 +123,9 @@ TEST(ReadIes, FluxOfALambertianLuminaireIsItsLumens) {
 }
 
 TEST(ReadIes, FluxOfADirectAndIndirectLuminaireIsItsLumensTimesItsEfficiency) {
-  // Two lamps of 2,900 lm, imperial units, and a table of a quadrant in steps of 2.5 and 22.5 degrees, as makers of
-  // such luminaires publish: I = I0 (1 + sin^2 v cos 2h) with I0 = 0.9 x 5800 / (4 pi) cd, which is an efficiency of
-  // 0.9. Chords of 22.5 degrees leave out no more than 1 % of the second term, whose integral over h is 0 by symmetry.
+  // Two lamps of 2,900 lm, imperial units, and a table of a quadrant in steps of 2.5 and 22.5 degrees, the usual steps
+  // of manufacturers. I = I0 (1 + sin^2 v cos 2h) with I0 = 0.9 x 5800 / (4 pi) cd, an efficiency of 0.9. Chords of
+  // 22.5 degrees omit at most 1 % of the second term, whose integral over h is 0 by symmetry.
   std::string text = "IESNA95\nTILT=NONE\n2 2900 1 73 5 1 1 0.85 4.04 .292\n1 1 63.7\n";
   for (int k = 0; k <= 72; ++k) text += std::to_string(2.5 * k) + "\n";
   text += "0 22.5 45 67.5 90\n";

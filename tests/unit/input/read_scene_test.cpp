@@ -72,7 +72,7 @@ TEST_F(ReadScene, CoordinatesAreTheNearestDoubles) {
 
 TEST_F(ReadScene, AreasPerMaterialDoNotDependOnTheValence) {
   write("m.mtl", materials);
-  // A hexagon (concave, L-shaped) and a square, once whole and once in triangles, with every form of index.
+  // A concave, L-shaped hexagon and a square, once whole and once in triangles, with every form of index.
   const std::string vertices =
       "mtllib m.mtl\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nvt 0 0\nvn 0 0 1\n"
       "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\n";
@@ -91,8 +91,7 @@ TEST_F(ReadScene, AreasPerMaterialDoNotDependOnTheValence) {
 
 TEST_F(ReadScene, EveryPolygonKnowsItsLineMaterialAndGroup) {
   write("m.mtl", materials);
-  // A face per material and group, in an order in which materials and groups interleave; comments and continued
-  // lines shift the numbers.
+  // One face per material and group, in interleaved order. Comments and continued lines shift the line numbers.
   const Scene scene = read_scene(write("m.obj",
                                        "# 1\nmtllib m.mtl\n" + square +          // 1 to 6
                                            "g a\nusemtl white\nf 1 2 3\n"        // face on line 9
@@ -161,8 +160,8 @@ TEST_F(ReadScene, FacesWithoutMaterialGetADefaultAndANote) {
   EXPECT_EQ(number_of(scene, DiagnosticCode::no_material), 1U);
 }
 
-// The mean of the picture in linear light, times Kd unless that is 0 or not stated; files that are no pictures do not
-// count.
+// The mean of the texture in linear light, times Kd unless that is 0 or missing. Files that are no pictures are
+// ignored.
 TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
   std::filesystem::create_directories(folder_ / "maps");
   write("maps/paint.png", two_pixels());
@@ -215,7 +214,7 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
   EXPECT_EQ(scene.lamp_hints[0].material, "bare");
   EXPECT_TRUE((scene.lamp_hints[0].radiance == 2).all());
 
-  // The Ka of a material with a Ke needs no mention.
+  // The Ka of a material with a Ke gives no note.
   write("m.mtl", "newmtl bare\nKd 0 0 0\nKa 2 2 2\nKe 1 1 1\n");
   const Scene lit = read_scene(write("m.obj", "mtllib m.mtl\n" + square + "usemtl bare\nf 1 2 3\n"));
   EXPECT_TRUE(test::notes_of(lit).empty());
@@ -372,7 +371,7 @@ TEST_F(ReadScene, AFaceMayHaveMoreCornersThanAByteCounts) {
       ASSERT_EQ(scene.polygons.size(), 3U);
       EXPECT_EQ(scene.polygons[1].corners.size(), static_cast<std::size_t>(n));
       EXPECT_EQ(scene.polygons[2].corners.size(), 3U);
-      // std::to_string gives six digits, and each corner counts for at most 2 pi / n of the area.
+      // std::to_string prints six digits, and each corner affects at most 2 pi / n of the area.
       EXPECT_NEAR(front_normal(scene, 1).z(), 1, 1e-6);
       EXPECT_NEAR(area_vector(corner_points(scene, 1)).norm(), n / 2.0 * std::sin(2 * std::numbers::pi / n), 1e-5);
     }

@@ -118,7 +118,7 @@ TEST_F(SpectraOfScenes, BringBandsOfWavelengthsOnlyWhereThereAreSome) {
   EXPECT_FALSE(rgb.band_choice->spectral);
 }
 
-// A number for a lamp keeps how its light is spread, red, green and blue take its place.
+// A single number for a lamp keeps its spectrum. Red, green and blue replace it.
 TEST_F(SpectraOfScenes, OfLampsStayWhereTheirStrengthChanges) {
   const std::string lamp =
       "[[material]]\nname = \"lamp\"\nspectrum = \"A\"\n[[material]]\nname = \"lamp\"\nradiance = ";
@@ -126,13 +126,13 @@ TEST_F(SpectraOfScenes, OfLampsStayWhereTheirStrengthChanges) {
   EXPECT_FALSE(read(lamp + "[20, 10, 5]\n").band_choice);
 }
 
-// Two lights that are spread alike over bands, and as bright as is expected.
+// Two lights with the same distribution over the bands and the expected luminance.
 void expect_spread(const Spectrum& found, const Spectrum& as, double luminance_expected, const Bands& bands) {
   EXPECT_NEAR(luminance(found, bands), luminance_expected, 1e-9 * luminance_expected);
   EXPECT_TRUE((found / found.sum()).isApprox(as / as.sum(), 1e-9)) << found.transpose() << " is not " << as.transpose();
 }
 
-// As when it is lit once more from stored form factors.
+// The same when it is relit from stored form factors.
 TEST_F(SpectraOfScenes, OfSolvedScenesTakeNewLight) {
   const std::string bands = "[spectra]\nbands = 16\n";
   const auto lamp = [&](const std::string& value) {
@@ -147,7 +147,7 @@ TEST_F(SpectraOfScenes, OfSolvedScenesTakeNewLight) {
   EXPECT_TRUE((changed(scene, {"wall.reflectance=0.3", "lamp.radiance=0"}).materials[0].reflectance == 0.3).all());
   EXPECT_FALSE(any_contains(changed(scene, {"wall.reflectance=0.3"}).diagnostics, "new light"));
   const std::size_t m = scene.materials[0].name == "lamp" ? 0 : 1;
-  // A colour is spread as one that is read, which takes the place of what the lamp was like.
+  // A new color gets the same spectrum as a color from a file. It replaces the lamp's spectrum.
   const Scene orange = changed(scene, {"lamp.radiance=20,10,5"});
   expect_spread(orange.materials[m].exitance, lamp("[20, 10, 5]").materials[m].exitance,
                 std::numbers::pi * luminance(rgb(20, 10, 5)), scene.bands);
@@ -167,12 +167,12 @@ TEST_F(SpectraOfScenes, OfSolvedScenesTakeNewDaylight) {
   const Scene in_rgb = with_options(read(""), options);
   expect_spread(lit.sky->horizontal_irradiance, as_read.sky->horizontal_irradiance,
                 luminance(in_rgb.sky->horizontal_irradiance), scene.bands);
-  // The ground has the colour of what lights it.
+  // The ground has the color of the light on it.
   expect_spread(lit.sky->ground_radiance, lit.sky->horizontal_irradiance, luminance(in_rgb.sky->ground_radiance),
                 scene.bands);
 }
 
-// Light beyond the bands is left out, of what is set as of what is read.
+// Light outside the bands is omitted, in settings and in files.
 TEST_F(SpectraOfScenes, OfPartOfTheLightStayWhereTheSameIsSet) {
   const std::string part = "[spectra]\nedges_nm = [500, 600]\n";
   const Scene scene = read(part);
@@ -183,7 +183,7 @@ TEST_F(SpectraOfScenes, OfPartOfTheLightStayWhereTheSameIsSet) {
   EXPECT_LT(luminance(scene.materials[m].exitance, scene.bands), .9 * std::numbers::pi * luminance(rgb(10, 10, 10)));
   EXPECT_TRUE(same.materials[m].exitance.isApprox(scene.materials[m].exitance, 1e-12))
       << same.materials[m].exitance << " instead of " << scene.materials[m].exitance;
-  // Diffuse ground of reflectance rho sends on rho / pi of what it gets, in every band.
+  // Diffuse ground of reflectance rho has the radiance rho / pi times the irradiance, in every band.
   const std::string sky = "[sky]\nkind = \"uniform\"\nilluminance = 1000\n[ground]\nreflectance = 0.3\n";
   const Scene lit = read(part + sky);
   const Spectrum expected = .3 / std::numbers::pi * lit.sky->horizontal_irradiance;

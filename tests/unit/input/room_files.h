@@ -17,7 +17,7 @@ struct Triangles {
   std::vector<std::array<std::uint32_t, 3>> corners;
 };
 
-/// The twelve triangles of a box, fronts inward or outward.
+/// The twelve triangles of a box, with fronts inward or outward.
 inline Triangles with_box(Triangles shape, const Point& low, const Point& high, bool inward) {
   const auto first = static_cast<std::uint32_t>(shape.vertices.size());
   for (const double z : {low.z(), high.z()}) {
@@ -37,13 +37,13 @@ inline Triangles with_box(Triangles shape, const Point& low, const Point& high, 
   return shape;
 }
 
-/// A closed room of 3 x 2.4 x 2.1 m with a box that floats in it. Most coordinates are no binary fractions.
+/// A closed room of 3 x 2.4 x 2.1 m with a floating box in it. Most coordinates are not binary fractions.
 inline Triangles room() {
   Triangles shape = with_box(Triangles(), Point(0, 0, 0), Point(3, 2.4, 2.1), true);
   return with_box(shape, Point(1.1, 0.7, 0.3), Point(1.9, 1.3, 0.9), false);
 }
 
-/// A lamp of 0.6 x 0.5 m that hangs below the ceiling and shines down, as OBJ and MTL.
+/// A lamp of 0.6 x 0.5 m below the ceiling that shines down, as OBJ and MTL.
 constexpr const char* lamp_obj =
     "mtllib lamp.mtl\nv 0.3 0.4 2\nv 0.3 0.9 2\nv 0.9 0.9 2\nv 0.9 0.4 2\nusemtl lamp\nf 1 2 3 4\n";
 constexpr const char* lamp_mtl = "newmtl lamp\nKd 0 0 0\nKe 10 9 8\n";
@@ -150,7 +150,7 @@ inline std::string as_collada(const Triangles& shape) {
   return out.str();
 }
 
-/// Millimetres, as most CAD programs write it; a wall with a colour of 0.5.
+/// In millimeters, the usual unit of CAD programs. One wall has a color of 0.5.
 inline std::string as_ifc(const Triangles& shape) {
   std::ostringstream out;
   out << "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
@@ -191,7 +191,7 @@ inline std::string as_ifc(const Triangles& shape) {
   return out.str();
 }
 
-/// Positions as floats, then indices as 16-bit numbers.
+/// Positions are floats, followed by 16-bit indices.
 inline std::string gltf_buffer(const Triangles& shape) {
   std::string bytes;
   const auto append = [&](const auto& value) { bytes += bytes_of(value); };
@@ -204,8 +204,8 @@ inline std::string gltf_buffer(const Triangles& shape) {
   return bytes;
 }
 
-/// The JSON of a glTF file with one mesh; `buffer` is `"uri": "room.bin",` or empty for GLB, `node` has the node's
-/// further properties and `material` those of its material.
+/// The JSON of a glTF file with one mesh. `buffer` is `"uri": "room.bin",` or empty for GLB. `node` and `material` hold
+/// further properties of the node and its material.
 inline std::string gltf_json(const Triangles& shape, const std::string& buffer, const std::string& node,
                              const std::string& material) {
   const std::size_t vertices = shape.vertices.size();

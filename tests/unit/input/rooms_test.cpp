@@ -11,8 +11,8 @@
 namespace patchlight::rooms_test {
 namespace {
 
-// A slab of 10 m x 3 m and a roof over it, in mm, and between them two spaces of 4 m x 3 m x 2.5 m: Living at the
-// origin and Kitchen at x = 5 m.
+// A slab of 10 m x 3 m and a roof, in mm, and two spaces of 4 m x 3 m x 2.5 m between them: Living at the origin and
+// Kitchen at x = 5 m.
 std::string house() {
   std::string text =
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
@@ -58,7 +58,7 @@ class Rooms : public ModelFiles {
  protected:
   Rooms() { write("house.ifc", house()); }
 
-  // Of a new scene file for the house, as if it were this scene.
+  // A new scene file for the house, with the contents of this scene.
   std::string new_text(const Scene& scene, const NewPlaces& places = {}) const {
     return new_scene_file(scene, new_light(scene), places, {folder_ / "house.ifc"}, {}, folder_ / "new.toml");
   }
@@ -77,7 +77,7 @@ TEST_F(Rooms, AreNamedByTheModelAndNoFacesOfIt) {
   EXPECT_EQ(scene.polygons.size(), 12U);
 }
 
-// Middles of 0.5 m cells over 4 m x 3 m, 0.5 m from the walls: 6 x 4 in each room, turned and moved with the model.
+// Middles of 0.5 m cells over 4 m x 3 m, 0.5 m from the walls: 6 x 4 in each room, rotated and moved with the model.
 TEST_F(Rooms, HaveAGridEach) {
   const Scene scene = read_scene(
       write("house.toml",
@@ -111,7 +111,7 @@ TEST_F(Rooms, OfNoSuchNameAreRefusedWithANearOne) {
   EXPECT_NE(refused("Kitchne").find("did you mean 'Kitchen'"), std::string::npos);
 }
 
-// What `new` writes is read again: the sky that the model needs, sensors and views.
+// The scene file of `new` can be read again: the sky that the model needs, sensors and views.
 TEST_F(Rooms, AreInANewSceneFile) {
   NewPlaces places;
   places.grid = FloorGrid{"work plane", {}, {"Living", "Kitchen"}, 0.8, {}, {}, {}, 0};
@@ -125,7 +125,7 @@ TEST_F(Rooms, AreInANewSceneFile) {
   EXPECT_EQ(again.cameras[0].eye, Point(1, 1, 1.6));
 }
 
-// In a box around both, which is closed, a lamp over the middle of each floor, within half a cell of sqrt(12) / 10 m.
+// A closed box surrounds both rooms. A lamp is over the middle of each floor, within half a cell of sqrt(12) / 10 m.
 TEST_F(Rooms, ThatNoDaylightGetsIntoHaveALampEachInANewSceneFile) {
   const Scene house = read_scene(folder_ / "house.ifc");
   Scene box = test::with_box(test::empty_scene({test::grey(0.5)}), Point(0, 0, 0), Point(9, 3, 2.5), false);
@@ -140,7 +140,7 @@ TEST_F(Rooms, ThatNoDaylightGetsIntoHaveALampEachInANewSceneFile) {
   }
 }
 
-// Twelve rooms at most have one; which have none is said, and a room too small for one is among them.
+// At most twelve rooms have one. The file lists the rooms without one, including a room that is too small.
 TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
   const NamedRoom living = read_scene(folder_ / "house.ifc").rooms[0];
   Scene box = test::with_box(test::empty_scene({test::grey(0.5)}), Point(0, 0, 0), Point(9, 3, 2.5), false);
@@ -155,7 +155,7 @@ TEST_F(Rooms, WithoutALampAreNamedInANewSceneFile) {
   EXPECT_EQ(new_text(box).find("No lamp in"), std::string::npos);
 }
 
-// In a spire over a corner, without a ceiling and over the middle of its box, no place is found.
+// A spire over a corner has no ceiling and is not over the middle of its box, so no position is found.
 TEST_F(Rooms, HaveNoLampWhereNoPlaceIsFound) {
   Scene spire = test::empty_scene({test::grey(0.5)});
   spire.up = Vector::UnitZ();
@@ -168,7 +168,7 @@ TEST_F(Rooms, HaveNoLampWhereNoPlaceIsFound) {
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }
 
-// What it writes for a model in another unit is read again.
+// The scene file of a model in another unit can be read again.
 TEST_F(Rooms, OfAModelInFeetAreInANewSceneFile) {
   const std::filesystem::path model =
       write("plate.obj", "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nusemtl floor\nf 1 2 3 4\n");
@@ -180,7 +180,7 @@ TEST_F(Rooms, OfAModelInFeetAreInANewSceneFile) {
   }
 }
 
-// Under a roof that comes down to the floor, z = x up to the ridge at x = 2, there is no place at 0.8 m up to x = 0.8.
+// The roof comes down to the floor, z = x up to the ridge at x = 2. There is no position at 0.8 m for x below 0.8.
 TEST_F(Rooms, HaveNoSensorsAboveTheirRoofs) {
   const auto face = [](const std::string& name, const std::string& corners) {
     return R"({"type": "Face", "identifier": ")" + name +

@@ -110,7 +110,7 @@ TEST_F(SceneFile, TransformsInTheStatedOrder) {
   EXPECT_EQ(corner("rotate = [{axis = \"z\", degrees = 90}, {axis = [5, 0, 0], degrees = -270}]\n"), Point(0, 0, 4));
   EXPECT_EQ(corner("matrix = [[0, 1, 0, 7], [1, 0, 0, 8], [0, 0, 1, 9]]\n"), Point(7, 12, 9));
   EXPECT_EQ(corner("unit = \"mm\"\ntranslate = [1, 0, 0]\n"), Point(1.004, 0, 0));
-  // Rounding of a cosine, three products: 1e-15 of 4 m.
+  // Rounding of a cosine and three products: 1e-15 of 4 m.
   const Point turned = corner("rotate = {axis = [1, 1, 1], degrees = 120}\n");
   EXPECT_LT((turned - Point(0, 4, 0)).norm(), 1e-14);
 }
@@ -123,7 +123,7 @@ TEST_F(SceneFile, TurnsModelsWithAnotherUprightAxis) {
   EXPECT_EQ(back.vertices[4], Point(1, 2.5, -1));
 }
 
-// With det < 0 corners run the other way round, so that the lamp still shines against its old normal's image.
+// If det < 0, the order of corners is reversed. So the lamp still shines against the image of its old normal.
 TEST_F(SceneFile, MirroredModelsKeepTheirFronts) {
   const Scene straight = read(room);
   const Scene mirrored = read(std::string(room) + "scale = [-1, 1, 1]\n");
@@ -225,7 +225,7 @@ TEST_F(SceneFile, WrongValuesAreRefusedWithLineAndKey) {
   }
 }
 
-// Also where the parser shows the text that it stumbled over.
+// The same where the parser quotes the faulty text.
 TEST_F(SceneFile, IsRefusedOnOneLine) {
   const std::string message = refused(std::string(room) + "truth = t\n\"m\"\n");
   EXPECT_NE(message.find("is not TOML"), std::string::npos) << message;

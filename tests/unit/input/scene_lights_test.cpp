@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A type C table of 100 cd in all directions below the horizon and above.
+// A type C table of 100 cd in all directions below and above the horizon.
 constexpr const char* ies =
     "IESNA:LM-63-2002\n[TEST] made up\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 60\n0 90 180\n0\n100 100 100\n";
 
@@ -31,7 +31,7 @@ class SceneLights : public ModelFiles {
 };
 
 const std::string room = "up = \"z\"\n[[model]]\nfile = \"room.obj\"\n";
-const std::string lamp = room + "[[luminaire]]\nposition = [1, 2, 2.5]\n";  // its keys come at line 6
+const std::string lamp = room + "[[luminaire]]\nposition = [1, 2, 2.5]\n";  // its keys start at line 6
 
 double lux_at_a_metre(const Spectrum& intensity) { return luminance(intensity); }
 
@@ -73,7 +73,7 @@ TEST_F(SceneLights, SpotsAndSpheresGiveTheFluxThatIsStated) {
   EXPECT_NEAR(ball.exitance[1] * 4 * pi * 0.1 * 0.1, 5, 1e-14);  // E 4 pi r^2
 }
 
-// 100 cd everywhere are 1256.6 lm; asked for as 628.3 lm they are half as bright.
+// 100 cd in all directions are 1256.6 lm. A flux of 628.3 lm halves them.
 TEST_F(SceneLights, PhotometricFilesAreReadAndScaled) {
   const std::string keys = room + "[[luminaire]]\nkind = \"ies\"\nfile = \"lamp.ies\"\npositions = [[0,0,2],[1,0,2]]\n";
   const Scene scene = read(keys);
@@ -84,7 +84,7 @@ TEST_F(SceneLights, PhotometricFilesAreReadAndScaled) {
   const WebLight& whole = std::get<WebLight>(scene.luminaires[0].light);
   EXPECT_NEAR(luminance(whole.watts_per_lumen), 1, 1e-15);
   const Scene half = read(keys + "lumens = 628.3185\n");
-  // The flux is integrated in steps of half a degree: 1e-5.
+  // The flux is integrated in steps of 0.5 degrees: 1e-5.
   EXPECT_NEAR(luminance(std::get<WebLight>(half.luminaires[0].light).watts_per_lumen), 0.5, 1e-5);
 }
 
@@ -98,8 +98,8 @@ TEST_F(SceneLights, SkiesHaveTheHorizontalIlluminanceStated) {
   EXPECT_TRUE(scene.photometric);
 }
 
-// Greenwich, equinox of March 2024, true noon (12:07:26 UTC by the equation of time, -7.4 minutes): the sun is in the
-// south, 90 - 51.4769 degrees high, within the 0.2 degrees by which the declination differs from 0 that day.
+// Greenwich, equinox of March 2024, true noon (12:07:26 UTC by the equation of time, -7.4 minutes). The sun is in the
+// south, 90 - 51.4769 degrees high, within 0.2 degrees, the declination on that day.
 TEST_F(SceneLights, TheSunStandsWherePlaceAndTimeSay) {
   const std::string site = room + "[site]\nlatitude = 51.4769\nlongitude = 0\n[sun]\nirradiance = 800\ntime = ";
   const Scene scene = read(site + "2024-03-20T12:07:26Z\n");
@@ -108,7 +108,7 @@ TEST_F(SceneLights, TheSunStandsWherePlaceAndTimeSay) {
   EXPECT_LT(std::abs(scene.sun->direction.x()), 0.005);
   EXPECT_LT(scene.sun->direction.y(), 0);
   EXPECT_EQ(scene.sun->normal_irradiance.size(), 3);
-  // The same instant by the clocks of Paris, and with north turned to x.
+  // The same instant in the local time of Paris, with north along x.
   const Scene paris = read("north = [1, 0, 0]\n" + site + "2024-03-20T13:07:26+01:00\n");
   EXPECT_LT(
       (paris.sun->direction - Vector(scene.sun->direction.y(), -scene.sun->direction.x(), scene.sun->direction.z()))

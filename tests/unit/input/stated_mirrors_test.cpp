@@ -1,4 +1,4 @@
-// Mirrors that model files state.
+// Mirrors in model files.
 #include "patchlight/input/read_scene.h"
 
 #include "input/materials.h"
@@ -24,7 +24,7 @@ ReadOptions settings(const std::vector<std::string>& texts) {
   return options;
 }
 
-// A floor, its materials "wall" and "mirror", this one by what a test states of it.
+// A floor with the materials "wall" and "mirror". Each test defines the second one.
 class StatedMirrors : public ModelFiles {
  protected:
   Scene of_mtl(const std::string& mirror, const ReadOptions& options = {}) const {
@@ -80,7 +80,7 @@ TEST_F(StatedMirrors, WhatIsRoughOrHasNoReflectionIsGloss) {
   }
 }
 
-// Where rho + rho_s <= 1 up to rounding, nothing is lowered: 1 - 0.9 is a little less than 0.1.
+// Where rho + rho_s <= 1 to rounding, nothing is reduced: 1 - 0.9 is slightly less than 0.1.
 TEST_F(StatedMirrors, ReflectNoMoreThanTheyDoNotScatter) {
   const Scene scene = of_mtl("Kd 0.5 0.3 0\nKs 0.9 0.5 1.5\nillum 3\n");
   expect_mirror(scene.materials[1], rgb(0.5, 0.5, 1), rgb(0.5, 0.3, 0));
@@ -128,7 +128,7 @@ TEST_F(StatedMirrors, PanesAreNone) {
   }
 }
 
-// The note names the setting, which gives what the file would be with a rough surface.
+// The note names the setting that gives the result for a rough surface.
 TEST_F(StatedMirrors, ASettingMakesThemMatt) {
   const ReadOptions matt = settings({"*.specular_reflectance=0"});
   const std::string metal = "Kd 0.9 0.6 0.3\nKs 0.5 0.5 0.5\nPm 1\nillum 3\n";
@@ -151,7 +151,7 @@ TEST_F(StatedMirrors, AreThoseThatASettingMakes) {
   expect_mirror(stated, set.specular_reflectance, set.reflectance);
 }
 
-// A pane is no mirror, whatever the file says.
+// A pane is never a mirror, even if the file declares one.
 TEST_F(StatedMirrors, ASettingCountsMoreThanTheFile) {
   expect_mirror(mirror_of(polished, settings({"mirror.specular_reflectance=0.5"})), rgb(0.5, 0.5, 0.5), rgb(0, 0, 0));
   const Material pane = of_gltf(smooth_metal, settings({"wall.transmittance=0.1"})).materials[0];

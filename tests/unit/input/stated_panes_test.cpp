@@ -1,4 +1,4 @@
-// Transparency that model files state.
+// Transparency in model files.
 #include "patchlight/input/read_scene.h"
 
 #include "input/materials.h"
@@ -20,7 +20,7 @@ ReadOptions settings(const std::vector<std::string>& texts) {
   return options;
 }
 
-// A floor, its materials "wall" and "glass" by what a test states of them.
+// A floor with the materials "wall" and "glass", defined by each test.
 class StatedPanes : public ModelFiles {
  protected:
   Scene of_mtl(const std::string& glass, const std::string& wall = "Kd 0.5 0.5 0.5\n",
@@ -105,7 +105,7 @@ TEST_F(StatedPanes, WhereMostMaterialsLetAllThroughTheyAreOpaque) {
     EXPECT_TRUE(
         any_contains(scene.diagnostics, "these become opaque: wall, glass; read.settings wall.transmittance=1"));
   }
-  // One of two is believed.
+  // One of two is used.
   expect_transmittance(of_mtl("d 0\n").materials[1], rgb(1, 1, 1));
 }
 
@@ -133,7 +133,7 @@ TEST_F(StatedPanes, GltfTransmitsBaseColor) {
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.18, 0.12, 0.06), 1e-12)) << "what is not transmitted";
 }
 
-// The pane lets no more through than one of its index that absorbs nothing: pane_of() keeps the index.
+// The pane transmits no more than one of its index that absorbs nothing: pane_of() keeps the index.
 TEST_F(StatedPanes, GltfLetsNoMoreThroughThanGlassOfItsIndex) {
   const std::string white = R"("extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}})";
   const Material material = of_gltf(white).materials[0];
@@ -147,7 +147,7 @@ TEST_F(StatedPanes, GltfAlphaIsWhatIsCovered) {
   const Scene blended = of_gltf(std::string(base_color) + R"(, "alphaMode": "BLEND")");
   expect_transmittance(blended.materials[0], rgb(0.75, 0.75, 0.75));
   EXPECT_TRUE(blended.materials[0].reflectance.isApprox(rgb(0.225, 0.15, 0.075), 1e-12));
-  // A quarter is there, of which 0.8 times the base colour goes through.
+  // A quarter is covered, of which 0.8 times the base color is transmitted.
   const Scene both = of_gltf(transmitting("0.8") + R"(, "alphaMode": "BLEND")");
   expect_transmittance(both.materials[0], rgb(0.93, 0.87, 0.81));
   for (const char* mode : {R"(, "alphaMode": "MASK")", R"(, "alphaMode": "OPAQUE")", ""})
@@ -174,7 +174,7 @@ TEST_F(StatedPanes, ColladaAndIfcStateOpacity) {
   expect_opaque(of_collada("").materials[0]);
 }
 
-// The note names them and the setting, which gives what the file would be without transparency.
+// The note names them and the setting that gives the result without transparency.
 TEST_F(StatedPanes, ASettingMakesThemOpaque) {
   const ReadOptions opaque = settings({"*.transmittance=0"});
   const std::string grey = R"("pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.6, 0.3, 1]})";
@@ -213,7 +213,7 @@ TEST_F(StatedPanes, ASettingCountsMoreThanTheFile) {
   EXPECT_EQ(glass_of("d 0.9\n", settings({"glass.index=1.6"})).index, 1.6);
 }
 
-// rho + T <= 1, whatever file and settings say of rho.
+// rho + T <= 1 for any rho in the file and the settings.
 TEST_F(StatedPanes, ReflectNoMoreThanTheyDoNotLetThrough) {
   const Scene scene = of_mtl("d 0.3\nTf 1 0.5 0.1\n", "Kd 0.5 0.5 0.5\n", settings({"*.reflectance=0.6"}));
   EXPECT_TRUE((scene.materials[1].reflectance == (1 - scene.materials[1].transmittance).min(0.6)).all());
@@ -235,12 +235,12 @@ TEST_F(StatedPanes, AnIndexAloneIsRefused) {
   const std::string message = refusal(write("m.toml", model));
   EXPECT_NE(message.find("m.toml:4: found the index of refraction 1.6 for material 'glass'"), std::string::npos)
       << message;
-  // In any order, and with a transmittance of 0 as an earlier one is taken back.
+  // In any order, and a transmittance of 0 resets an earlier one.
   EXPECT_EQ(glass_of("", settings({"glass.index=1.6", "glass.transmittance=0.8"})).index, 1.6);
   EXPECT_NO_THROW(read_scene(write("m.toml", model + "transmittance = 0.8\n"), settings({"glass.transmittance=0"})));
 }
 
-// Of a scene that was read before, too.
+// The same for a scene that was read before.
 TEST_F(StatedPanes, NothingReflectsWhatItLetsThrough) {
   const ReadOptions both = settings({"wall.transmittance=0.6", "wall.reflectance=0.5"});
   const Scene scene = of_mtl("");

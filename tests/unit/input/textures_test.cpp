@@ -15,7 +15,7 @@ const std::string four_colours("\xFF\0\0\0\xFF\0\0\0\xFF\xFF\xFF\xFF", 12);
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
-// What is seen at a point of the first polygon.
+// The reflectance at a point of the first polygon.
 Spectrum at(const Scene& scene, const Point& point) {
   const TextureMap* map = texture_map_on(scene, scene.polygons[0], Side::front);
   if (!map) return scene.materials[scene.polygons[0].material].reflectance;
@@ -40,7 +40,7 @@ TEST_F(Textures, OfObjLieWhereVtSays) {
   expect_corners(read_scene(write("m.obj", head + "f 1/1 2/2 3/3 4/4\n")), {red, green, blue, white});
   expect_corners(read_scene(write("turned.obj", head + "f 1/2 2/3 3/4 4/1\n")), {blue, red, white, green});
   expect_corners(read_scene(write("mirrored.obj", head + "f 1/2 2/1 3/4 4/3\n")), {green, red, white, blue});
-  // As negative numbers, in triangles, which become one polygon again.
+  // With negative indices, in triangles, which become one polygon again.
   const Scene triangles = read_scene(write("t.obj", head + "f 1/-4/1 2/-3/1 3/-2/1\nf 1/1 3/3 4/4\n"));
   EXPECT_EQ(triangles.polygons.size(), 1U);
   expect_corners(triangles, {red, green, blue, white});
@@ -86,7 +86,7 @@ TEST_F(Textures, WithBadPlacesCountByTheirMeanAndNameTheLine) {
   }
 }
 
-// A picture that is reduced keeps its mean: each texel is the mean of the part that it takes the place of.
+// A reduced texture keeps its mean: each texel is the mean of the part that it replaces.
 TEST_F(Textures, ThatAreReducedKeepTheirMeansOverParts) {
   std::string pixels;
   for (int k = 0; k < 3 * 30 * 21; ++k) pixels += static_cast<char>(k * 37 % 251);
@@ -104,7 +104,7 @@ TEST_F(Textures, ThatAreReducedKeepTheirMeansOverParts) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(small.texels[0][k], part[k], 1e-6);
 }
 
-// A square of two triangles in glTF, v downwards, with what its sampler and texture say.
+// A square of two triangles in glTF, with v downwards, and its sampler and texture.
 class GltfTextures : public ModelFiles {
  protected:
   Scene read(const std::string& sampler, const std::string& of_texture) {
@@ -144,7 +144,7 @@ TEST_F(GltfTextures, AreScaledTurnedAndMovedByTheirTransform) {
   };
   expect_corners(with(R"("offset":[0.5,0])"), {green, red, white, blue});
   expect_corners(with(R"("scale":[0.5,0.5])"), {red, red, red, red});
-  // Counter-clockwise as seen with v downwards: u' = v, v' = -u.
+  // Counter-clockwise with v downwards: u' = v, v' = -u.
   expect_corners(with(R"("rotation":1.5707963267948966)"), {blue, red, white, green});
 }
 

@@ -28,7 +28,7 @@ TEST(UsualBands, ThreeAreRedGreenAndBlue) {
   EXPECT_GT(bands[1].luminous_weight, bands[0].luminous_weight);
 }
 
-// 179 lm/W times the luminous part, whatever the bands are.
+// 179 lm/W times the luminous part, for all bands.
 TEST(Luminance, WeighsBandsAsTheyAreStated) {
   const Bands bands = {{"450 nm", 0.25, {0, 0, 1}}, {"570 nm", 0.75, {1, 1, 0}}};
   Spectrum radiance(2);

@@ -13,7 +13,7 @@ struct Pair {
   double difference;
 };
 
-// Sharma, Wu and Dalal 2005, table 1: pairs that show mistakes in hue and its mean, each told to four digits.
+// Sharma, Wu and Dalal 2005, table 1: pairs that reveal errors in the hue and its mean, to four digits.
 const std::array<Pair, 13> published = {{{{50, 2.6772, -79.7751}, {50, 0, -82.7485}, 2.0425},
                                          {{50, 3.1571, -77.2803}, {50, 0, -82.7485}, 2.8615},
                                          {{50, 2.8361, -74.0200}, {50, 0, -82.7485}, 3.4412},
@@ -40,8 +40,8 @@ TEST(ColourDifference, OfAColourToItselfIsZero) {
   EXPECT_EQ(lab_of({95, 100, 108}, {95, 100, 108}), Lab(100, 0, 0));
 }
 
-// The parabola through squared distances at steps of 1 % is off by a share of the step of the order of the step; CIE 15
-// gives D65 as 6504 K.
+// The parabola through squared distances at steps of 1 % has an error of the order of the step, relative to the step.
+// CIE 15 gives D65 a temperature of 6504 K.
 TEST(ColourTemperature, IsThatOfABlackBody) {
   for (const double kelvin : {1500.0, 2700.0, 4000.0, 6504.0, 20000.0}) {
     const auto found = correlated_colour_temperature(xyz_of_cells(in_cells(*planckian_spectrum(kelvin), Beyond::zero)));
@@ -60,7 +60,7 @@ TEST(ColourTemperature, HasNoMeaningFarFromBlackBodies) {
 TEST(Xyz, OfLinearRgbIsThatOfItsPrimaries) {
   const Bands bands = usual_bands(3);
   const Eigen::Vector3d white = xyz_of(rgb(1, 1, 1), bands) / luminous_efficacy;
-  // CIE 15: D65 is .95047, 1, 1.08883.
+  // CIE 15: D65 is 0.95047, 1, 1.08883.
   EXPECT_NEAR(white.x(), 0.95047, 5e-5);
   EXPECT_NEAR(white.y(), 1, 1e-12);
   EXPECT_NEAR(white.z(), 1.08883, 3e-4);  // that of x and y within 5e-5

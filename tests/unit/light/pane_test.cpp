@@ -45,7 +45,7 @@ TEST_P(APane, SharesOutAllLightOrAbsorbsIt) {
 }
 
 TEST_P(APane, LetsLessThroughTheFlatterLightComes) {
-  // Of indices up to that of dense glass: beyond about 2 Brewster's angle brings more than it costs.
+  // For indices up to that of dense glass. Above about 2, Brewster's angle gains more than it loses.
   for (int degree = 0; degree < 90; ++degree)
     EXPECT_LE(transmittance(pane(), cosine_of_degrees(degree + 1)),
               transmittance(pane(), cosine_of_degrees(degree)) + rounding)
@@ -54,7 +54,7 @@ TEST_P(APane, LetsLessThroughTheFlatterLightComes) {
 
 TEST_P(APane, IsAMirrorAtGrazingAngles) {
   if (pane().index == 1) return;
-  // 1 - r of one surface goes as 4 cos theta / (n cos theta') or n^2 times that, cos theta'^2 = 1 - 1 / n^2.
+  // 1 - r of one surface approaches 4 cos theta / (n cos theta'), or n^2 times that, with cos theta'^2 = 1 - 1 / n^2.
   const double n = pane().index;
   const double cosine = 1e-9;
   const double most = 4 * n * cosine / std::sqrt(1 - 1 / (n * n));
@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Light, APane,
                          testing::Combine(testing::Values(1.0, 1.33, 1.52, 1.9),
                                           testing::Values(0.0, 1e-6, 0.2, 0.5, 0.8, 0.9, 0.95, 0.999, 1.0)));
 
-// One surface at a time: all ways of light between them, summed up until nothing is left.
+// One surface at a time: the sum over all paths of light between them, until nothing remains.
 struct Series {
   double transmitted = 0;
   double reflected = 0;
@@ -92,7 +92,7 @@ TEST(AnyPane, IsTheSumOfAllReflectionsInside) {
   for (const double degree : {0.0, 30.0, 56.659, 75.0, 85.0}) {
     const double inward = degree * std::numbers::pi / 180;
     const double inside = std::asin(std::sin(inward) / n);
-    // Fresnel's equations as sines and tangents of the angles; at normal incidence their limit.
+    // Fresnel's equations with sines and tangents of the angles, and their limit at normal incidence.
     const double s = degree > 0 ? std::sin(inward - inside) / std::sin(inward + inside) : (n - 1) / (n + 1);
     const double p = degree > 0 ? std::tan(inward - inside) / std::tan(inward + inside) : (n - 1) / (n + 1);
     const double a = std::pow(pane.internal, 1 / std::cos(inside));
@@ -104,7 +104,8 @@ TEST(AnyPane, IsTheSumOfAllReflectionsInside) {
 }
 
 TEST(AClearPane, HasTheReflectanceOfTwoSurfaces) {
-  // 2 r / (1 + r) with r = ((n - 1) / (n + 1))^2, which no pane of this index lets more through than the rest of.
+  // A pane of this index reflects at least 2 r / (1 + r), with r = ((n - 1) / (n + 1))^2, and transmits at most the
+  // rest.
   const double r = std::pow(0.52 / 2.52, 2);
   const Pane pane = pane_of(1.52, (1 - r) / (1 + r));
   EXPECT_NEAR(pane.index, 1.52, rounding);
@@ -113,7 +114,7 @@ TEST(AClearPane, HasTheReflectanceOfTwoSurfaces) {
 }
 
 TEST(AClearPane, LetsAllLightOfOnePolarisationThroughAtBrewstersAngle) {
-  // tan theta = n: there r_p = 0, and r_s = ((n^2 - 1) / (n^2 + 1))^2.
+  // tan theta = n, where r_p = 0 and r_s = ((n^2 - 1) / (n^2 + 1))^2.
   const double n = 1.5;
   const double r0 = std::pow((n - 1) / (n + 1), 2);
   const Pane pane = pane_of(n, (1 - r0) / (1 + r0));
@@ -132,7 +133,7 @@ TEST(APaneOfTransmittanceOne, IsNone) {
 }
 
 TEST(APaneOfIndexOne, IsASheetWithHoles) {
-  // The share of a sheet without thickness that is open is the same from everywhere.
+  // The open fraction of a sheet without thickness is the same from all directions.
   const Pane pane = pane_of(1, 0.7);
   for (const double cosine : {1.0, 0.5, 0.1, 0.0}) {
     EXPECT_EQ(transmittance(pane, cosine), 0.7);

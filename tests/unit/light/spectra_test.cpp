@@ -14,14 +14,14 @@ Eigen::Vector2d chromaticity(const SampledSpectrum& light) {
   return xyz.head<2>() / xyz.sum();
 }
 
-// CIE 15:2004, table T.3: x and y to five digits, of tables of every nm; between the knots of 5 nm they are
-// interpolated here.
+// CIE 15:2004, table T.3: x and y to five digits, from tables of every nm. Here the values between the knots of 5 nm
+// are interpolated.
 TEST(Illuminants, HaveTheChromaticitiesOfCie) {
   EXPECT_LT((chromaticity(*illuminant_d65_spectrum()) - Eigen::Vector2d(0.31272, 0.32903)).norm(), 5e-5);
   EXPECT_LT((chromaticity(*illuminant_a_spectrum()) - Eigen::Vector2d(0.44758, 0.40745)).norm(), 5e-5);
 }
 
-// The tabled values of A are rounded from the formula.
+// The tabulated values of A are rounded from the formula.
 TEST(Illuminants, AIsItsFormula) {
   const SampledSpectrum a = *illuminant_a_spectrum();
   EXPECT_NEAR(a.values[180], 100, 1e-12);  // 560 nm
@@ -29,8 +29,8 @@ TEST(Illuminants, AIsItsFormula) {
   EXPECT_NEAR(a.values[400], 241.675, 5e-4);
 }
 
-// D65 is the daylight of 6504 K, its table rounded to six digits of a formula with rounded factors M_1 and M_2, and
-// linear between 10 nm as it was made: CIE 15:2004, 3.1, note 4.
+// D65 is the daylight of 6504 K. Its table is rounded to six digits, from a formula with rounded factors M_1 and M_2.
+// The table is linear between multiples of 10 nm by definition: CIE 15:2004, 3.1, note 4.
 TEST(Illuminants, DaylightOfD65IsD65) {
   const Cells tabled = in_cells(*illuminant_d65_spectrum(), Beyond::zero);
   const Cells computed = in_cells(*daylight_spectrum(6504), Beyond::zero);
@@ -47,7 +47,7 @@ TEST(Primaries, SumUpToOneWithin0And1) {
   }
 }
 
-// What they were made for, up to the twelve digits of their table.
+// Their defining property, up to the twelve digits of their table.
 TEST(Primaries, HaveTheirColoursUnderD65) {
   const Cells d65 = in_cells(*illuminant_d65_spectrum(), Beyond::zero);
   for (std::size_t k = 0; k < 3; ++k) {

@@ -13,7 +13,7 @@ namespace {
 
 using Places = std::vector<Eigen::Vector2d>;
 
-// Sums of some thousand numbers of at most 1, over areas of a hundredth.
+// Sums of a few thousand numbers of at most 1, over areas of a hundredth.
 constexpr double rounding = 1e-11;
 
 Texture coloured(std::uint32_t width, std::uint32_t height) {
@@ -62,7 +62,7 @@ double area_of(const Places& polygon) {
   return std::abs(twice) / 2;
 }
 
-// The slow and plain way: a convex polygon is cut at every line of texels.
+// Brute force: a convex polygon is cut at every line of texels.
 Rgb mean_by_clipping(const TexturedReflectance& surface, const Places& polygon) {
   const Texture& texture = *surface.texture;
   Rgb sum{};
@@ -88,7 +88,7 @@ void expect_same(const Rgb& found, const Rgb& expected, double tolerance) {
 
 class AMeanOver : public testing::TestWithParam<std::tuple<Wrap, double>> {
  protected:
-  // A quadrilateral that reaches over the edges of the picture, turned.
+  // A rotated quadrilateral that reaches beyond the edges of the texture.
   static Places turned_quadrilateral() {
     const double angle = std::get<1>(GetParam()) * std::numbers::pi / 180;
     Places places;
@@ -113,7 +113,7 @@ TEST_P(AMeanOver, APolygonDoesNotDependOnTheSenseOfItsCorners) {
   expect_same(means.over(places), one, rounding);
 }
 
-// Additive: the mean over a polygon is that over its two parts, by their areas.
+// Additivity: the mean over a polygon is the area-weighted mean over its two parts.
 TEST_P(AMeanOver, APolygonIsThatOfItsTriangles) {
   const TextureMeans means(textured(coloured(64, 33), std::get<0>(GetParam())));
   const Places places = turned_quadrilateral();

@@ -26,7 +26,7 @@ constexpr double pi = std::numbers::pi;
 
 Spectrum one_band(double value) { return Spectrum::Constant(1, value); }
 
-// A floor of 20 x 20 m, front side up; a black one, far below all that the tests look at, unless they say otherwise.
+// A floor of 20 x 20 m, front side up. Unless a test states otherwise, it is black and far below the tested points.
 Scene with_floor(Scene scene, double z = 0) {
   return with_quad(std::move(scene), {Point(-10, -10, z), Point(10, -10, z), Point(10, 10, z), Point(-10, 10, z)});
 }
@@ -48,8 +48,8 @@ DirectIrradiance at(const Scene& scene, const SurfacePoint& point, const Lightin
 }
 
 TEST(DirectIrradiance, OfASphereIsThatOfAPointWhereItIsAllAboveTheHorizon) {
-  // E = M (r / d)^2 cos theta. In the square of the samples the cosine is smooth: 64 Owen-scrambled points leave about
-  // 64^-1.5 = 2e-3 of what it varies by, here a third of its mean.
+  // E = M (r / d)^2 cos theta. The cosine is smooth in the square of the samples. 64 Owen-scrambled points leave about
+  // 64^-1.5 = 2e-3 of its variation, which is a third of its mean here.
   Scene scene = only_floor(-5);
   scene.luminaires = {sphere(Point(0, 1, 2), 0.5, 7)};
   const DirectIrradiance direct = at(scene, {Point(0, 0, 0), Vector::UnitZ()});
@@ -59,8 +59,8 @@ TEST(DirectIrradiance, OfASphereIsThatOfAPointWhereItIsAllAboveTheHorizon) {
 }
 
 TEST(DirectIrradiance, OfASphereThatTheHorizonCutsDiffersByTheVectorIrradiance) {
-  // The irradiances of both sides of a plane differ by M (r / d)^2 cos theta, however the sphere lies; both are seen
-  // here, as cos theta = 0.1 < r / d = 0.5.
+  // The irradiances of both sides of a plane differ by M (r / d)^2 cos theta at any position of the sphere. Both sides
+  // see it here, because cos theta = 0.1 < r / d = 0.5.
   Scene scene = only_floor(-5);
   const double distance = 2;
   scene.luminaires = {sphere(Point(distance * std::sqrt(0.99), 0, distance * 0.1), 1, 7)};
@@ -72,8 +72,8 @@ TEST(DirectIrradiance, OfASphereThatTheHorizonCutsDiffersByTheVectorIrradiance) 
   EXPECT_NEAR(above - below, 7 * 0.25 * 0.1, 0.005 * 7 * 0.25 * 0.1);
 }
 
-// A point 0.3 m below the middle of a lamp of 0.15 m, part of which a plate hides: the estimates of its irradiance by
-// 16 rays, over many scrambles.
+// A point 0.3 m below the middle of a lamp of 0.15 m, partly hidden by a plate: estimates of its irradiance by 16 rays,
+// over many scrambles.
 struct Penumbra {
   std::vector<double> by_solid_angle;
   std::vector<double> by_area;
@@ -98,8 +98,8 @@ Penumbra penumbra() {
     for (const auto& [u, v, s, t] : scrambled_sobol(samples, hash({trial, 5}))) {
       const Arrival arrival = from_luminaire(lamp, scene.up, {Point(0, 0, 0), Vector::UnitZ()}, {u, v});
       by_solid_angle += arrival.irradiance * arriving(arrival.from) / samples;
-      // Uniform over the sphere: E = M / pi x area x the mean of cos cos' / d^2 where the sphere's point is turned
-      // here.
+      // Uniform over the sphere: E = M / pi x area x the mean of cos cos' / d^2 over the sphere's points that face the
+      // receiver.
       const double z = 1 - 2 * u;
       const double across = std::sqrt(1 - z * z);
       const Vector normal(across * std::cos(2 * pi * v), across * std::sin(2 * pi * v), z);
@@ -128,7 +128,7 @@ double variance(const std::vector<double>& values) {
 TEST(DirectIrradiance, BySolidAngleInThePenumbraHasAFifthOfTheVarianceByArea) {
   const Penumbra estimates = penumbra();
   EXPECT_LT(5 * variance(estimates.by_solid_angle), variance(estimates.by_area));
-  // Both mean the same, part of M (r / d)^2 = 0.25: three standard errors of the mean of 200.
+  // Both have the same mean, a part of M (r / d)^2 = 0.25, within three standard errors of the mean of 200.
   EXPECT_NEAR(mean(estimates.by_solid_angle), mean(estimates.by_area),
               3 * std::sqrt(variance(estimates.by_area) / 200));
   EXPECT_LT(mean(estimates.by_solid_angle), 0.2);
@@ -142,7 +142,7 @@ TEST(DirectIrradiance, OfAUniformSkyIsPiTimesItsRadiance) {
   const DirectIrradiance direct = at(scene, {Point(0, 0, 0), Vector::UnitZ()});
   EXPECT_NEAR(direct.irradiance(0, 0), 3 * pi, 1e-10);
   EXPECT_LT(direct.standard_error(0, 0), 1e-6);
-  // And of a patch of the floor, to which nothing but the sky is seen.
+  // The same for a patch of the floor that sees only the sky.
   const PatchMesh mesh = fronts(scene, 10);
   EXPECT_NEAR(direct_irradiance(lighting_of(scene, Tracing(scene)), mesh).irradiance(0, 0), 3 * pi, 1e-10);
 }
@@ -165,9 +165,9 @@ TEST(DirectIrradiance, OfAFacadeUnderAnOvercastSkyIsFortyPercent) {
 }
 
 TEST(DirectIrradiance, StandardErrorsAreThoseOfTheErrors) {
-  // The facade again with few rays and many seeds. Four replicates give the variance of the mean without bias, up to
-  // what scrambles that they share correlate; its mean over 100 seeds is known to about 100^-0.5 x (2 / 3)^0.5 = 8 %,
-  // and the mean square of 100 errors to 14 %: factors of 0.6 to 1.6 are three standard deviations.
+  // The facade again with few rays and many seeds. Four replicates give the variance of the mean without bias, apart
+  // from correlations of the scrambles that they share. Its mean over 100 seeds is known to about 100^-0.5 x (2 /
+  // 3)^0.5 = 8 %, and the mean square of 100 errors to 14 %. Factors of 0.6 to 1.6 are three standard deviations.
   Scene scene = only_floor(-5);
   Sky sky;
   sky.kind = SkyKind::cie_overcast;
@@ -218,8 +218,8 @@ double flux_onto(const PatchMesh& mesh, const DirectIrradiance& direct) {
 }
 
 TEST(DirectIrradiance, OfALuminaireCloseToTheCeilingIsAllOfItsFlux) {
-  // Solid angles around a point add up to 4 pi. Nothing is in the way, so that all rays count the same: rounding, for
-  // any seed and for the fewest rays.
+  // Solid angles around a point add up to 4 pi. Nothing blocks the light, so all rays have the same weight. Only
+  // rounding remains, for any seed and for the fewest rays.
   const Scene scene = box_with_luminaire_at_the_ceiling();
   const PatchMesh mesh = fronts(scene, 0.7);
   ASSERT_GT(mesh.size(), 150U);
@@ -228,16 +228,16 @@ TEST(DirectIrradiance, OfALuminaireCloseToTheCeilingIsAllOfItsFlux) {
       const DirectIrradiance direct =
           direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.lamp_samples = samples, .seed = seed});
       EXPECT_NEAR(flux_onto(mesh, direct), 4 * pi, 1e-9);
-      // The root of what rounding leaves of a variance.
+      // The root of the rounding error of a variance.
       EXPECT_LT((direct.standard_error / direct.irradiance).maxCoeff(), 1e-6);
     }
   }
 }
 
 TEST(DirectIrradiance, OfALuminaireCloseToACoveredPatchIsOfThePartOverWhichNothingLies) {
-  // A plate covers a part of the ceiling: both get what they do as one, and the fluxes still add up to 4 pi when the
-  // ceiling's irradiance counts for the part of it that is not covered. 1024 rays for the patches which the plate's
-  // edges cut: within 1 %.
+  // A plate covers a part of the ceiling. Together they receive the same light as the ceiling alone. The fluxes still
+  // add up to 4 pi if only the uncovered part of the ceiling counts. 1024 rays for the patches cut by the plate's
+  // edges: within 1 %.
   Scene scene = box_with_luminaire_at_the_ceiling();
   scene = with_quad(std::move(scene), {Point(1, 1, 3), Point(1, 3, 3), Point(2, 3, 3), Point(2, 1, 3)});
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -265,7 +265,8 @@ TEST(DirectIrradiance, OfALuminaireInThePlaneOfAPatchIsNothing) {
 }
 
 TEST(DirectIrradiance, OfThePartOverWhichNothingLies) {
-  // A rug over a third of a floor of one patch: the rest has all of the sun's irradiance, and so has its mean.
+  // A rug covers a third of a floor of one patch. The rest receives all of the sun's irradiance, so its mean is the
+  // same.
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(3, 0, 0), Point(3, 1, 0), Point(0, 1, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   scene.sun = Sun{Vector::UnitZ(), one_band(10)};
@@ -278,7 +279,7 @@ TEST(DirectIrradiance, OfThePartOverWhichNothingLies) {
   EXPECT_NEAR(direct.irradiance(1, 0), 10, 1e-12);
 }
 
-// A room with a glazed window of 2 x 1 m in its wall at y = 0, which is otherwise four rectangles around it.
+// A room with a glazed window of 2 x 1 m in its wall at y = 0, which consists of four rectangles around it.
 Scene room_with_window(double transmittance) {
   Material glass = grey(0.1);
   glass.transmittance = one_band(transmittance);
@@ -298,9 +299,9 @@ Scene room_with_window(double transmittance) {
 }
 
 TEST(DirectIrradiance, OfTheSunThroughAWindowIsTheFluxThatEnters) {
-  // Flux = normal irradiance x area x cosine x transmittance at that cosine. Only the patches on the spot's edge are
-  // sampled in part: of patches of 1/8 m some 50 of 500, each to about 64^-0.75 / 4 = 1 %, which add up at random to
-  // 0.02 %.
+  // Flux = normal irradiance x area x cosine x transmittance at that cosine. Only patches on the spot's edge are partly
+  // sampled: about 50 of 500 patches of 1/8 m. Each is known to about 64^-0.75 / 4 = 1 %. These errors add up at random
+  // to 0.02 %.
   Scene scene = room_with_window(0.8);
   scene.sun = Sun{Vector(0.1, -0.7, 0.5).normalized(), one_band(10)};
   const PatchMesh mesh = fronts(scene, 0.125);
@@ -318,9 +319,9 @@ TEST(DirectIrradiance, OfTheSunThroughAWindowIsTheFluxThatEnters) {
 }
 
 TEST(DirectIrradiance, OfTheSkyThroughAWindowIsItsFormFactor) {
-  // A point before the middle of the window, 2 m away, turned to it: E = pi L tau F, F that of a rectangle of 2 x 1 m
-  // at that distance: 4 / (2 pi) sum over its quarter a = 1, b = 0.5, c = 2 of a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 +
-  // c^2)) and the same with a and b exchanged. The sheet with holes has the same transmittance at all angles.
+  // A point 2 m before the middle of the window, facing it: E = pi L tau F. F is that of a rectangle of 2 x 1 m at that
+  // distance. Its quarter has a = 1, b = 0.5, c = 2. F is 4 / (2 pi) times a / sqrt(a^2 + c^2) atan(b / sqrt(a^2 +
+  // c^2)) plus the same with a and b exchanged. The sheet with holes has the same transmittance at all angles.
   Scene scene = room_with_window(0.5);
   scene.materials[1].index = 1;
   Sky sky;
@@ -338,7 +339,7 @@ TEST(DirectIrradiance, OfTheSkyThroughAWindowIsItsFormFactor) {
   EXPECT_LT(direct.standard_error(0, 0), 0.002 * expected);
 }
 
-// The same sky for all: overcast over a grey ground.
+// The same sky for all: overcast over a gray ground.
 Scene under_a_sky(Scene scene) {
   Sky sky;
   sky.kind = SkyKind::cie_overcast;
@@ -348,7 +349,7 @@ Scene under_a_sky(Scene scene) {
   return scene;
 }
 
-// The flux that the patches of the first `polygons` get, and its variance.
+// The flux onto the patches of the first `polygons`, and its variance.
 struct Flux {
   double watts = 0;
   double variance = 0;
@@ -367,8 +368,8 @@ Flux flux_of_sky(const Scene& scene, PolygonIndex polygons) {
 }
 
 TEST(DirectIrradiance, OfTheSkyThroughGlassOfTransmittanceOneIsThatThroughAHole) {
-  // Theorem; the two are found by rays of their own. Also with one pane glazed and the other a hole, and with two panes
-  // one behind the other, each of which is aimed at. Four standard errors.
+  // Theorem: a clear pane is equivalent to a hole. Both use rays of their own. Further cases have one pane glazed and
+  // the other a hole, and two panes one behind the other. Rays are aimed at each of them. Four standard errors.
   const Scene glass = under_a_sky(room_with_window(1));
   Scene hole = glass;
   hole.polygons.pop_back();
@@ -384,7 +385,7 @@ TEST(DirectIrradiance, OfTheSkyThroughGlassOfTransmittanceOneIsThatThroughAHole)
     const Flux flux = flux_of_sky(scene, walls);
     EXPECT_NEAR(flux.watts, expected.watts, 4 * std::sqrt(flux.variance + expected.variance));
   }
-  // Holes are aimed at as panes are.
+  // Rays are aimed at holes as at panes.
   EXPECT_LT(std::sqrt(expected.variance), 2 * std::sqrt(flux_of_sky(glass, walls).variance));
 }
 
@@ -404,7 +405,8 @@ TEST(DirectIrradiance, AddsUpOverLights) {
               at(with_point, here).irradiance(0, 0) + at(with_sun, here).irradiance(0, 0), 1e-12);
 }
 
-// Whether few rays are traced at once or only where something may hide the ball, what hides nothing changes no bit.
+// Faces that hide nothing change no bit, whether a few rays are traced at once or only where something may hide the
+// ball.
 TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
   Scene scene = only_floor();
   scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
@@ -421,10 +423,10 @@ TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
   }
 }
 
-// The quarters of a square of 1 m, 3 m below a lamp that stands aside, from one sample each, as the floor's are so much
-// larger: with one of its own each quarter is off by what the irradiance varies by inside it; with the same one all are
-// off by nearly the same, and their differences by what changes of that between them, a quarter of it and less: the
-// squares are a sixteenth, and less than a quarter whatever 64 seeds leave to chance.
+// The quarters of a square of 1 m, 3 m below a lamp to the side. The floor is so much larger that each has one sample.
+// With its own sample, the error of each quarter is the variation of the irradiance within it. With a common sample all
+// errors are nearly equal, and their differences are a quarter or less. So their squares are a sixteenth. The limit of
+// a quarter allows for the scatter of 64 seeds.
 TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
   Scene scene = with_quad(only_floor(-5), {Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)});
   scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
@@ -443,8 +445,8 @@ TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
   EXPECT_LT(squares_of_errors(4), squares_of_errors(1) / 4);
 }
 
-// Patches of a room with a window: eight times the samples on every other one leave an eighth of the variance, or less,
-// as they are stratified; a quarter with what 16 seeds leave to chance. The others stay the same, to the last bit.
+// Patches of a room with a window. Eight times the samples on every other patch leave an eighth of the variance or
+// less, because they are stratified: a quarter within the scatter of 16 seeds. The other patches keep every bit.
 TEST(DirectIrradiance, TakesMoreSamplesWhereTheyAreDoubled) {
   Scene scene = room_with_window(0.5);
   Sky sky;
@@ -473,7 +475,7 @@ TEST(DirectIrradiance, TakesMoreSamplesWhereTheyAreDoubled) {
   EXPECT_LT(doubled, usual / 4);
 }
 
-// As where all light of a mesh is known from the one before.
+// The case in which all light of a mesh is known from the previous one.
 TEST(DirectIrradiance, OfNoPatchesIsEmpty) {
   Scene scene = room_with_window(0.5);
   Sky sky;
@@ -486,7 +488,7 @@ TEST(DirectIrradiance, OfNoPatchesIsEmpty) {
   EXPECT_EQ(direct.irradiance.cols(), 1);
 }
 
-// Beside a patch with an error of 1 by one ray, one by four rays has half of that at least.
+// Beside a patch with an error of 1 by one ray, the error of one by four rays is at least half of that.
 TEST(DirectIrradiance, ComparesErrorsByAsManyRays) {
   Scene scene = only_floor(0);
   const PatchMesh mesh = fronts(scene, 1);
@@ -521,7 +523,8 @@ TEST(DirectIrradiance, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(DirectIrradiance, OfAMeasuredLuminaireFollowsItsAimAndTilt) {
-  // 10 cd along the aim, 4 at 90 degrees from it in the 0 degree plane, 0 across; 0.5 of it when tilted by 90 degrees.
+  // 10 cd along the aim, 4 at 90 degrees from it in the 0 degree plane, and 0 across; half of that at a tilt of 90
+  // degrees.
   auto web = std::make_shared<PhotometricWeb>();
   web->vertical = {0, 90};
   web->horizontal = {0, 90};
@@ -536,7 +539,7 @@ TEST(DirectIrradiance, OfAMeasuredLuminaireFollowsItsAimAndTilt) {
   EXPECT_NEAR(at(scene, {Point(0, 0, 0), Vector::UnitZ()}).irradiance(0, 0), 0.25 * 10 / 4, 1e-12);
   EXPECT_NEAR(at(scene, {Point(2, 0, 2), -Vector::UnitX()}).irradiance(0, 0), 0.25 * 4 / 4, 1e-12);
   EXPECT_NEAR(at(scene, {Point(0, 2, 2), -Vector::UnitY()}).irradiance(0, 0), 0, 1e-12);
-  // Aimed at x, the 0 degree plane across: along y there are 4 cd, half of them when tilted so far.
+  // Aimed at x, with the 0 degree plane across: 4 cd along y, and half of that at this tilt.
   scene.luminaires[0].aim = Vector::UnitX();
   scene.luminaires[0].zero_plane = Vector::UnitY();
   EXPECT_NEAR(at(scene, {Point(2, 0, 2), -Vector::UnitX()}).irradiance(0, 0), 0.5 * 0.25 * 10 / 4, 1e-12);

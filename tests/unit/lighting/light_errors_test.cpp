@@ -1,4 +1,4 @@
-// The standard errors of light by lamps with extent and by the sky, against what many more samples give.
+// Standard errors of light from lamps with extent and from the sky, compared with many more samples.
 #include "patchlight/scene/sides.h"
 
 #include "lighting/direct_irradiance.h"
@@ -19,8 +19,8 @@ using namespace test;
 
 constexpr std::uint64_t number_of_seeds = 20;
 
-// A floor of 4 x 4 m, a plate of 1 x 1 m, .5 m above it, and a ball lamp of .2 m, 1.5 m above it. In the plate's shadow
-// there is all from nothing to a bit of the lamp.
+// A floor of 4 x 4 m, a plate of 1 x 1 m, 0.5 m above it, and a ball lamp of 0.2 m, 1.5 m above it. In the plate's
+// shadow the visible part of the lamp varies from nothing to a small part.
 Scene with_penumbra(const Eigen::Isometry3d& motion) {
   Scene scene = empty_scene({grey(0), grey(0)});
   scene = with_quad(std::move(scene), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
@@ -41,18 +41,18 @@ Scene under_the_sky(const Eigen::Isometry3d& motion) {
   return scene;
 }
 
-// As it is, and turned and moved.
+// The scene unchanged, and after a motion.
 std::array<Eigen::Isometry3d, 2> motions() {
   Eigen::Isometry3d turned(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   turned.pretranslate(Vector(3, -5, 7));
   return {Eigen::Isometry3d::Identity(), turned};
 }
 
-// Many seeds, and what many samples give.
+// Many seeds, and a reference of many samples.
 struct Runs {
   std::vector<DirectIrradiance> seeds;
   Field reference;
-  Eigen::Array<bool, Eigen::Dynamic, 1> counts;  // receivers that are looked at
+  Eigen::Array<bool, Eigen::Dynamic, 1> counts;  // tested receivers
 };
 
 // The mean of the squares of (difference from the reference) / (standard error).
@@ -73,13 +73,13 @@ double mean_chi_square(const Runs& runs) {
 
 constexpr LightingOptions many{.lamp_samples = 1 << 11, .sky_samples = 1 << 13, .seed = 99};
 
-// The same with a plate that lets everything through.
+// The same with a plate that transmits everything.
 Scene with_clear_plate(Scene scene) {
   scene.materials[1].transmittance = Spectrum::Constant(1, 1);
   return scene;
 }
 
-// Those receivers count that the plate hides a part of the light from.
+// Only receivers count from which the plate hides a part of the light.
 Runs with_reference(std::vector<DirectIrradiance> seeds, const Field& reference, const Field& unshadowed) {
   return {std::move(seeds), reference,
           reference.col(0) > 1e-3 * unshadowed.col(0) && reference.col(0) < 0.999 * unshadowed.col(0)};
@@ -115,9 +115,9 @@ Runs at_points(const Scene& scene, const Eigen::Isometry3d& motion, int lamp_sam
                         at(with_clear_plate(scene), reference).irradiance);
 }
 
-// Exact standard errors have a mean of 1, those of 16 replicates 15 / 13; those of four have 3, and where four may
-// agree and be wrong more. Wider ones are no lie. The mean over some hundred receivers and seeds that scatter together
-// is known to about a third.
+// Exact standard errors have a mean of 1, those of 16 replicates 15 / 13, and those of four 3. The mean is higher if
+// four agree by chance. Overestimated errors are allowed. The mean over a few hundred correlated receivers and seeds is
+// known to about a third.
 constexpr double highest_chi_square = 1.5;
 
 TEST(LightErrors, OfABallsSoftShadowHoldOnPatches) {
@@ -125,7 +125,7 @@ TEST(LightErrors, OfABallsSoftShadowHoldOnPatches) {
     EXPECT_LT(mean_chi_square(on_patches(with_penumbra(motion))), highest_chi_square);
 }
 
-// A floor of as many faces as there are patches.
+// A floor with one face per patch.
 TEST(LightErrors, OfABallsSoftShadowHoldOnPatchesThatAreFacesOfTheirOwn) {
   Scene scene = with_penumbra(Eigen::Isometry3d::Identity());
   const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(8 + 17 * y + x); };
@@ -147,7 +147,7 @@ TEST(LightErrors, OfABallsSoftShadowHoldAtPoints) {
     EXPECT_LT(mean_chi_square(at_points(with_penumbra(motion), motion)), highest_chi_square);
 }
 
-// A row of lamps that an edge cuts alike: their errors are independent, though their shadows are the same.
+// An edge cuts all lamps of a row in the same way. Their errors are independent, though their shadows are the same.
 TEST(LightErrors, OfManyBallsAddUp) {
   const auto motion = Eigen::Isometry3d::Identity();
   Scene scene = with_penumbra(motion);
@@ -169,8 +169,8 @@ TEST(LightErrors, OfTheSkyHoldAtPoints) {
 }
 
 TEST(LightErrors, OfABallThatNothingCanHideAreOfItsCosineAlone) {
-  // The floor alone: M (r / d)^2 cos theta at every place, up to what the samples of the ball's cosine leave, and not
-  // the 3 / n of rays that might have missed something.
+  // The floor alone: M (r / d)^2 cos theta at every point, to the sampling error of the ball's cosine. The error 3 / n
+  // of rays that may have missed an obstacle does not apply.
   Scene scene = with_penumbra(Eigen::Isometry3d::Identity());
   scene.polygons.pop_back();
   const SurfacePoint below{Point(0, 0, 0.001), Vector::UnitZ(), no_polygon};

@@ -42,7 +42,7 @@ TEST(LightPaths, MultiplyTheOpeningsOnTheWay) {
 }
 
 TEST(LightPaths, TakeWhatPanesLetThroughAtTheirAngle) {
-  // Of two indices, from either side, whichever length the way has.
+  // Panes of two indices, from either side, for any length of the path.
   Scene scene = nothing();
   scene.materials[2].index = 1.9;
   scene = with_sheet(with_sheet(std::move(scene), 0, 1), 0.1, 2);
@@ -67,7 +67,7 @@ TEST(LightPaths, EndAtAnythingOpaque) {
   const Scene scene = with_sheet(with_sheet(nothing(), 0, 1), 1, 0);
   EXPECT_EQ(share(scene, {Point(0, 0, -1), Point(0, 0, 3)}), 0);
   EXPECT_NEAR(share(scene, {Point(0, 0, -1), Point(0, 0, 0.5)}), 0.8, rounding);
-  // Also on the scene's convex hull, which is no obstacle between its points.
+  // On the scene's convex hull, too, which does not block segments between its points.
   EXPECT_EQ(share(with_sheet(nothing(), 0, 0), {Point(0, 0, -1), Point(0, 0, 1)}), 0);
 }
 
@@ -96,8 +96,8 @@ TEST(LightPaths, KeepTheBandsApart) {
   EXPECT_EQ(share(0, 2), 0);
 }
 
-// Wherever nothing is said to be able to hide a ball, every ray to it arrives; where something stands between, it is
-// said: balls and places at random among plates, one of them a pane, in two sizes.
+// Every ray arrives if no face can hide a ball. If a face does hide it, the test for possible blockers finds it. Random
+// balls and points among plates, one of them a pane, in two sizes.
 TEST(LightPaths, NothingHidesABallThatMayNotBeHidden) {
   for (const double size : {1.0, 1e-3}) {
     Scene scene = empty_scene({grey(0.5), grey(0)});

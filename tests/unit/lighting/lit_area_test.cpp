@@ -23,7 +23,7 @@ double lit(const std::vector<Shade>& shades) {
 TEST(LitArea, OfNoShadowIsAll) { EXPECT_DOUBLE_EQ(lit({}), 1); }
 
 TEST(LitArea, OfShadowsBesideEachOtherIsNothing) {
-  // Two triangles that share a diagonal, as of a roof: no light between them.
+  // Two triangles that share a diagonal, for example of a roof: no light passes between them.
   EXPECT_EQ(lit({{{Vector2d(-1, -1), Vector2d(3, -1), Vector2d(-0.3, 2)}, nullptr},
                  {{Vector2d(3, -1), Vector2d(3, 3), Vector2d(-0.3, 2)}, nullptr}}),
             0);
@@ -36,7 +36,7 @@ TEST(LitArea, OfOverlappingShadowsIsThatOutsideTheirUnion) {
 }
 
 TEST(LitArea, OfAHoleBetweenFourShadowsIsTheHole) {
-  // However small.
+  // For any size.
   for (const double edge : {0.2, 1e-3, 1e-5}) {
     const double a = 0.37;
     const double b = a + edge;
@@ -51,7 +51,7 @@ TEST(LitArea, OfAHoleBetweenFourShadowsIsTheHole) {
 TEST(LitArea, OfPanesIsTheProductOfTheirTransmittances) {
   const Spectrum half = Spectrum::Constant(1, 0.5);
   const Spectrum tenth = Spectrum::Constant(1, 0.1);
-  // All of it behind one pane, a quarter behind another and a quarter behind both and a wall.
+  // One pane covers everything, another one a quarter. A pane and a wall cover another quarter.
   EXPECT_NEAR(lit({{square, &half},
                    {rectangle(0, 0.5, 0, 0.5), &tenth},
                    {rectangle(0.5, 1, 0, 0.5), nullptr},
@@ -60,8 +60,8 @@ TEST(LitArea, OfPanesIsTheProductOfTheirTransmittances) {
 }
 
 TEST(LitArea, OfRandomTrianglesIsThatOfPoints) {
-  // 8 triangles are looked at together, 60 in halves. Against 65,536 stratified points: boundaries of a length of some
-  // 30 in cells of 1/256 leave well below 2e-3.
+  // 8 triangles are handled together, 60 are split in halves. The reference is 65,536 stratified points. Boundaries of
+  // a length of about 30 in cells of 1/256 leave well below 2e-3.
   for (const std::uint32_t count : {8U, 60U}) {
     std::vector<Shade> shades;
     const Spectrum half = Spectrum::Constant(1, 0.5);
@@ -98,7 +98,7 @@ TEST(LitArea, OfRandomTrianglesIsThatOfPoints) {
 }
 
 TEST(LitArea, OfTooManyShadowsInOnePlaceIsNotSaid) {
-  // A fan around one point, which no halving takes apart.
+  // A fan around one point, which no bisection separates.
   std::vector<Shade> shades;
   for (int k = 0; k < 300; ++k) {
     const double angle = k * 2 * 3.14159265358979 / 300;

@@ -37,7 +37,7 @@ MirrorChains chains_in(const Scene& scene) {
   return lighting_of(scene, tracing).mirrors->paths.found();
 }
 
-// A mirror of 10 x 10 m on the ground, and one of 2 cm, 10 cm below a luminaire at 2 m, that looks up at it.
+// A mirror of 10 x 10 m on the ground, and one of 2 cm that faces up, 10 cm below a luminaire at 2 m.
 Scene large_mirror_and_reflector() {
   Scene scene = empty_scene({mirror(0.9), grey(0.5)});
   scene = with_square(std::move(scene), Point(-5, -5, 0), 10, 0);
@@ -56,7 +56,7 @@ TEST(MirrorChains, OfMirrorsOfAnySizeThatALampShinesAtAreFollowed) {
     return chain.mirrors.size() == 1 && chain.mirrors[0].polygon == 1 && chain.mirrors[0].side == Side::front;
   });
   EXPECT_TRUE(follows);
-  // The back is turned away from the lamp: light reaches it by way of the ground alone.
+  // The back faces away from the lamp: light reaches it only via the ground.
   for (const MirrorChain& chain : found.chains)
     EXPECT_TRUE(chain.mirrors.back().polygon == 0 || chain.mirrors.back().side == Side::front);
   EXPECT_LT(found.unfollowed_share, 1e-5);
@@ -70,7 +70,8 @@ TEST(MirrorChains, NeedASource) {
   EXPECT_EQ(chains_in(scene).unfollowed_share, 0);
 }
 
-// A beam of half angle 2 degrees meets one of two equal mirrors: its chain comes first, however the other one lies.
+// A beam of half angle 2 degrees meets one of two equal mirrors. That mirror's chain comes first at any position of the
+// other.
 TEST(MirrorChains, AreRankedByTheBeamsOfNarrowLamps) {
   Scene scene = empty_scene({mirror(0.5), mirror(0.9)});
   scene = with_square(std::move(scene), Point(-4, -1, 0), 2, 0);
@@ -85,8 +86,8 @@ TEST(MirrorChains, AreRankedByTheBeamsOfNarrowLamps) {
   EXPECT_EQ(found.chains[0].mirrors[0].polygon, 0U);
 }
 
-// Two mirrors that face each other and are cut into facets: a point between them sees the same images as if they were
-// whole. There are more chains than are followed; the error covers the others.
+// Two mirrors that face each other, cut into facets. A point between them sees the same images as in whole mirrors. The
+// number of chains exceeds the limit, and the error covers the others.
 TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
   constexpr double gap = 2, edge = 2, reflectance = 0.9;
   constexpr int half = 12;
@@ -109,7 +110,7 @@ TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
   EXPECT_EQ(lighting.mirrors->paths.chains().size(), 1024U);
   const SurfacePoint at{Point(1, 0, -0.5), Vector::UnitZ(), no_polygon};
   const DirectIrradiance found = mirrored_irradiance(lighting, {}, std::span(&at, 1), {});
-  // Images at x0 + 2 k gap and -x0 + 2 k gap, by |2 k| and |2 k - 1| mirrors; those that the facets reach.
+  // Images at x0 + 2 k gap and -x0 + 2 k gap, by |2 k| and |2 k - 1| mirrors, within reach of the facets.
   double exact = 0;
   for (int k = -6; k <= 6; ++k) {
     const auto from = [&](double x, int mirrors) {

@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-// A floor of one patch, 3 x 1 m, a third of it under a rug, before a mirror that throws the sun onto all of it.
+// A floor of one patch, 3 x 1 m, with a rug on a third of it. A mirror reflects the sun onto all of it.
 Scene floor_before_mirror() {
   Material mirror = grey(0);
   mirror.specular_reflectance = Spectrum::Constant(1, 0.9);
@@ -52,8 +52,9 @@ TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
   EXPECT_GT(found, 15);
 }
 
-// Between mirrors that face each other images of a lamp go on without end: sixteen mirrors in a row are followed, and
-// the error has what lies beyond. By images k = 1, 2 ... of a small ball, on either side, at distance z from mirror 0.
+// Mirrors that face each other have an infinite row of images of a lamp. Chains of up to sixteen mirrors are followed,
+// and the error covers the rest. The sum is over images k = 1, 2 ... of a small ball, on either side, at distance z
+// from mirror 0.
 TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
   constexpr double gap = 2, height = 1, radius = 0.05;
   for (const double reflectance : {0.8, 0.97, 1.0}) {
@@ -75,7 +76,7 @@ TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
     ASSERT_TRUE(lighting.mirrors);
     const std::vector<SurfacePoint> points{{Point(1, 0, 0), Vector::UnitZ(), 0}};
     const DirectIrradiance found = mirrored_irradiance(lighting, {}, points, {});
-    // E sin^2 of the half angle times the cosine of each image, which lies k gaps to a side.
+    // E sin^2 of the half angle times the cosine of each image, at a distance of k gaps to the side.
     double exact = 0;
     for (double k = 1; k < 100000; ++k) {
       const double squared = height * height + k * k * gap * gap;
@@ -88,7 +89,7 @@ TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
   }
 }
 
-// A spot and mirrors of any size that it may be aimed at, one after the other; and a point that the last one lights.
+// A spot, a sequence of mirrors of any size that it may be aimed at, and a point lit by the last mirror.
 struct AimedSpot {
   Scene scene;
   SurfacePoint at;
@@ -108,7 +109,7 @@ AimedSpot aimed_spot(std::mt19937& random, std::size_t mirrors) {
   Material material = grey(0);
   material.specular_reflectance = Spectrum::Constant(1, 0.9);
   AimedSpot spot{empty_scene({grey(0.5), material}), {}, 50};
-  // Above a mirror on the floor of 12 m, from corner to corner of a room.
+  // Above a mirror of 12 m on the floor, diagonally across a room.
   spot.scene =
       with_quad(std::move(spot.scene), {Point(-3, -3, 0), Point(9, -3, 0), Point(9, 9, 0), Point(-3, 9, 0)}, 1);
   spot.scene =
@@ -143,7 +144,8 @@ AimedSpot aimed_spot(std::mt19937& random, std::size_t mirrors) {
   return spot;
 }
 
-// Turned, and as large as models in millimetres that are read as metres: irradiance falls by the square of lengths.
+// Rotated, and in the size of a millimeter model that is read in meters: irradiance decreases with the square of
+// lengths.
 TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 40; ++trial) {
@@ -163,8 +165,8 @@ TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
       const Lighting lighting = lighting_of(scene, tracing);
       const DirectIrradiance found = mirrored_irradiance(lighting, {}, std::span(&at, 1), {});
       const double expected = spot.expected / (scale * scale);
-      // The profile of a spot around its axis magnifies rounding of the cosine, 1e-16: 2^-(1e-8 / 0.02)^1.5 is 1 -
-      // 2e-10. Tails of beams by way of two mirrors are smaller than 1e-6.
+      // The profile of a spot amplifies the rounding of the cosine, 1e-16: 2^-(1e-8 / 0.02)^1.5 is 1 - 2e-10. Tails of
+      // beams via two mirrors are smaller than 1e-6.
       EXPECT_NEAR(found.irradiance(0, 0), expected, 1e-6 * expected + 3 * found.standard_error(0, 0))
           << "trial " << trial << ", scale " << scale;
       EXPECT_LT(found.standard_error(0, 0), 0.01 * expected);
@@ -172,8 +174,8 @@ TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
   }
 }
 
-// Chains of mirrors are looked for by groups of points: a point alone gets the same bits as among others, of which some
-// lie where only the other mirror throws light.
+// Chains of mirrors are searched for groups of points. A single point gets the same bits as among others, some of which
+// only the other mirror lights.
 TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   Material left = grey(0);
   left.specular_reflectance = Spectrum::Constant(1, 0.9);
@@ -193,7 +195,7 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   std::vector<SurfacePoint> points;
   for (int k = 0; k < 150; ++k) points.push_back({Point(-4.5 + 0.06 * k, 0.1, 0), Vector::UnitZ(), 0});
   const DirectIrradiance all = mirrored_irradiance(lighting, {}, points, {});
-  // Points keep their numbers, which their samples come from: those before are put in one place, far away.
+  // Points keep their numbers, which determine their samples: the earlier points are moved to one place, far away.
   int lit = 0;
   for (const std::size_t k : {0UL, 10UL, 63UL, 64UL, 75UL, 149UL}) {
     std::vector<SurfacePoint> alone(k, {Point(0, 8.9, 0), Vector::UnitZ(), 0});
@@ -208,8 +210,8 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   EXPECT_LT(lit, 6);
 }
 
-// A floor that gets light of a ball by a mirror that is too small for all of it. Three doublings leave an eighth of the
-// variance, or less as samples are stratified; patches that are not doubled keep their bits.
+// A floor that is lit by a ball via a mirror too small for the whole image. Three doublings leave an eighth of the
+// variance, or less, because samples are stratified. Other patches keep their bits.
 TEST(MirroredIrradiance, OfDoubledPatchesHasAsManyMoreRays) {
   Material mirror = grey(0);
   mirror.specular_reflectance = Spectrum::Constant(1, 0.9);

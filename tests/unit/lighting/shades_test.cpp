@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// A floor of 2 x 2 m, with the sun at a slant over it.
+// A floor of 2 x 2 m under a slanting sun.
 Scene sunny_floor() {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
   scene.sun = Sun{Vector(0.3, 0.2, 0.8).normalized(), Spectrum::Constant(1, 10)};
@@ -43,8 +43,8 @@ DirectIrradiance of_floor(const Scene& scene, double max_edge, std::uint64_t see
 }
 
 TEST(Shades, AreSampledWhereThereAreTooMany) {
-  // One patch by rays against 64 by their outlines. Three standard errors of 40 seeds' mean; the scatter of the seeds
-  // is the stated error, which four replicates tell without bias: 40 errors are known to 11 %.
+  // One patch by rays, compared with 64 by outlines, within three standard errors of the mean of 40 seeds. The scatter
+  // of the seeds matches the stated error, which four replicates estimate without bias: 40 errors are known to 11 %.
   const Scene scene = floor_under_leaves();
   const DirectIrradiance fine = of_floor(scene, 0.25);
   ASSERT_EQ(fine.irradiance.rows(), 64);
@@ -68,8 +68,8 @@ TEST(Shades, AreSampledWhereThereAreTooMany) {
 }
 
 TEST(Shades, OfRaysThatAllFindNothingAreKnownByTheRuleOfThree) {
-  // A roof of 3,200 triangles, in one of which there is a hole of 1 mm: no ray of 4,096 need find it, so that 3 / 4,096
-  // of the sun may be missed.
+  // A roof of 3,200 triangles, one of which has a hole of 1 mm. Possibly none of 4,096 rays finds it, so 3 / 4,096 of
+  // the sun may be missed.
   Scene scene = sunny_floor();
   constexpr int cells = 40;
   const double edge = 4.0 / cells;
@@ -87,13 +87,13 @@ TEST(Shades, OfRaysThatAllFindNothingAreKnownByTheRuleOfThree) {
   EXPECT_NEAR(direct.standard_error(0, 0), 3.0 / 4096 * unshadowed, 1e-12);
 }
 
-// Of the rectangle between the foot of a point at this height and (x, y).
+// Solid angle of the rectangle between the foot of a point at this height and (x, y).
 double solid_angle(double x, double y, double height) {
   return std::atan(x * y / (height * std::sqrt(x * x + y * y + height * height)));
 }
 
-// A floor of 2 x 2 m under a roof with a square hole, and a point of 3 W/sr above it: what falls through the hole is
-// 3 W/sr times the hole's solid angle. Rays alone found nothing of a hole of 2 cm, and said that this was certain.
+// A floor of 2 x 2 m under a roof with a square hole, and a point of 3 W/sr above it. The flux through the hole is 3
+// W/sr times the hole's solid angle. Rays alone miss a hole of 2 cm.
 TEST(Shades, OfALuminaireLeaveWhatFallsThroughASmallHole) {
   for (const double edge : {0.002, 0.02, 0.2}) {
     for (const double size : {1.0, 1e-3}) {
@@ -155,8 +155,8 @@ Scene floor_under_a_pane() {
 }
 
 TEST(Shades, OfAPaneBeforeAPointAreItsTransmittanceAtEachAngle) {
-  // E = T(cos) cos / d^2 of the floor's patches, which lie behind the pane wholly, in part, or not at all: by 400
-  // points of each. A patch of 0.25 m has parts of 6 cm, over which T varies by up to 4 %.
+  // E = T(cos) cos / d^2 of the floor's patches, which lie behind the pane wholly, partly, or not at all, by 400 points
+  // of each. A patch of 0.25 m has parts of 6 cm, over which T varies by up to 4 %.
   const Scene scene = floor_under_a_pane();
   const Pane pane = pane_of(1.52, 0.8);
   Scene floor = scene;
@@ -174,7 +174,7 @@ TEST(Shades, OfAPaneBeforeAPointAreItsTransmittanceAtEachAngle) {
       const bool is_behind = at.x() + way.x() / 1.5 < 0.71;
       expected += (is_behind ? transmittance(pane, cosine) : 1) * cosine / way.squaredNorm() / (cuts * cuts);
     }
-    // Of points a twentieth of a patch apart those on the edge leave 1 / 40 of 1 - T.
+    // With points a twentieth of a patch apart, the error on the edge is 1 / 40 of 1 - T.
     EXPECT_NEAR(direct.irradiance(i, 0), expected, 3 * direct.standard_error(i, 0) + 0.005 * expected) << i;
     EXPECT_LT(direct.standard_error(i, 0), 0.01 * expected) << i;
   }

@@ -18,7 +18,7 @@ using namespace test;
 
 constexpr double pi = std::numbers::pi;
 
-// A square wall at this y, in four faces around a square hole in its middle; it reaches `beside` to either side.
+// A square wall at this y, in four faces around a square hole in its middle. It extends `beside` to either side.
 Scene with_pierced_wall(Scene scene, double y, double width, double beside) {
   const auto quad = [&](double x0, double x1, double z0, double z1) {
     return Quad{Point(x0, y, z0), Point(x0, y, z1), Point(x1, y, z1), Point(x1, y, z0)};
@@ -30,8 +30,8 @@ Scene with_pierced_wall(Scene scene, double y, double width, double beside) {
   return with_quad(std::move(scene), quad(half, beside, -half, half));
 }
 
-// A room of 4 x 4 x 4 m, the wall of which at y = 0 has a hole in its middle; with a wall of 0.2 m another face with a
-// hole lies before it, and faces line the way between both.
+// A room of 4 x 4 x 4 m, with a hole in the middle of its wall at y = 0. A wall of 0.2 m has another face with a hole
+// in front, and faces line the passage between both.
 Scene pierced_room(double width, bool thick) {
   Scene scene = empty_scene({grey(0.5)});
   const std::vector<Quad> faces = box_faces(Point(-2, 0, -2), Point(2, 4, 2), true);
@@ -58,15 +58,15 @@ double area_of(const std::vector<Opening>& openings) {
   return area;
 }
 
-// From a point 2 m before the middle of a square to the square, whose normal is the point's: the configuration factor
-// 4 / (2 pi) sum over its quarter of a / sqrt(a^2 + c^2) atan(a / sqrt(a^2 + c^2)), twice.
+// From a point 2 m before the middle of a square that faces it: the configuration factor 4 / (2 pi) times the sum over
+// its quarter of a / sqrt(a^2 + c^2) atan(a / sqrt(a^2 + c^2)), twice.
 double factor_of_square(double width, double distance) {
   const double root = std::hypot(width / 2, distance);
   return 4 / pi * (width / 2) / root * std::atan(width / 2 / root);
 }
 
 TEST(SkyOpenings, AreTheHolesThroughWhichTheSkyShines) {
-  // Also in millimetres and turned.
+  // In millimeters and rotated, too.
   const Eigen::Affine3d turned =
       Eigen::Translation3d(3, -7, 2) * Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()) * Eigen::Scaling(0.001);
   for (const Eigen::Affine3d& motion : {Eigen::Affine3d::Identity(), turned}) {
@@ -79,7 +79,7 @@ TEST(SkyOpenings, AreTheHolesThroughWhichTheSkyShines) {
   }
 }
 
-// Between two boards behind the hole lies another, through which no light gets that has not passed the first.
+// Between two boards behind the hole lies another hole. All light through it has passed the first.
 TEST(SkyOpenings, AreNotGapsBehindAnother) {
   Scene scene = pierced_room(1, false);
   const auto board = [](double z0, double z1) {
@@ -110,7 +110,8 @@ TEST(SkyOpenings, AreFacesFirst) {
 }
 
 TEST(SkyOpenings, AreNotWhatLiesBesideAFloorInTheOpen) {
-  // Places that see much of the sky need no aiming; in the corner of the L and between the legs nothing shines in.
+  // Points that see much of the sky need no aimed rays. No light enters the corner of the L and the space between the
+  // legs.
   Scene scene = pierced_room(1, false);
   scene.polygons.clear();
   const auto floor = [](double x0, double x1, double y0, double y1) {
@@ -122,8 +123,8 @@ TEST(SkyOpenings, AreNotWhatLiesBesideAFloorInTheOpen) {
 }
 
 TEST(SkyOpenings, OfTwoCentimetresLightAPointAsTheirFormFactor) {
-  // E = pi L F. 2 m behind a hole of 2 cm one of 31,000 rays over the hemisphere gets out. Of the rays from the point
-  // 2,048 go to the hole, over which the integrand varies by a thousandth.
+  // E = pi L F. The hole of 2 cm is 2 m away. One of 31,000 rays over the hemisphere gets out. 2,048 rays of the point
+  // go to the hole, over which the integrand varies by a thousandth.
   const Eigen::Affine3d turned =
       Eigen::Translation3d(3, -7, 2) * Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   for (const Eigen::Affine3d& motion : {Eigen::Affine3d::Identity(), turned}) {
@@ -139,8 +140,8 @@ TEST(SkyOpenings, OfTwoCentimetresLightAPointAsTheirFormFactor) {
 }
 
 TEST(SkyOpenings, LightAPointThatSeesLittleOfThem) {
-  // A screen 0.5 m before the hole of 1 m leaves a strip of 1 cm of it in sight, E = pi L F: of some 2,048 rays to the
-  // hole about 20 get out, of 32 that are spread evenly one at a third of the points.
+  // A screen 0.5 m before the hole of 1 m leaves a visible strip of 1 cm, E = pi L F. About 20 of 2,048 rays to the
+  // hole get out. With 32 evenly spread rays, one gets out at a third of the points.
   Scene scene = pierced_room(1, false);
   const double edge = 0.49;
   scene = with_quad(std::move(scene),
@@ -156,8 +157,8 @@ TEST(SkyOpenings, LightAPointThatSeesLittleOfThem) {
   }
 }
 
-// A room with a window of 1 m and beside it a closet without, behind a wall: its outer wall has a slit of this width, 1
-// m high, or none. The sky shines alike from everywhere, 3 W/(m^2 sr).
+// A room with a window of 1 m and a closet without one behind a wall. The closet's outer wall has a slit of this width,
+// 1 m high, or none. The sky is uniform, 3 W/(m^2 sr).
 Scene room_and_closet(double slit) {
   Scene scene = empty_scene({grey(0.5)});
   const std::vector<Quad> faces = box_faces(Point(-2, 0, -2), Point(4, 4, 2), true);
@@ -183,8 +184,9 @@ Scene room_and_closet(double slit) {
 }
 
 TEST(SkyOpenings, LightAPointBesideAWindowThatItDoesNotSee) {
-  // Of the rays to openings those by solid angle go to the window, one of some hundreds to the slit. Of the others, an
-  // eighth of 2,048, half do. E = pi L F; what the 128 rays bring differs by less than a half, and they are stratified.
+  // Rays by solid angle go to the window, and one of a few hundred to the slit. Half of the others, an eighth of 2,048,
+  // go to the slit. E = pi L F. The contributions of these 128 rays differ by less than a half, and the rays are
+  // stratified.
   const Scene scene = room_and_closet(0.001);
   const Lighting lighting = lighting_of(scene, Tracing(scene));
   const std::vector<Point> slit{Point(3, 0, -0.5), Point(3, 0, 0.5), Point(3.001, 0, 0.5), Point(3.001, 0, -0.5)};
@@ -198,9 +200,9 @@ TEST(SkyOpenings, LightAPointBesideAWindowThatItDoesNotSee) {
 }
 
 TEST(SkyOpenings, ThatArriveNowhereLeaveAnError) {
-  // Without the slit nothing arrives. Of 2,048 rays to the window, or of 1,792, each would bring its part of pi L F: as
-  // much may be in sight. The window's area is taken for that of a ball around it, d^2 + A instead of d^2, .966, and
-  // the light of its middle for all.
+  // Without the slit no light arrives. Each of the 2,048 or 1,792 rays to the window would contribute its part of pi L
+  // F: this much may be visible. The estimate uses the area of a ball around the window, d^2 + A instead of d^2, 0.966,
+  // and the light of its middle for all of it.
   const Scene scene = room_and_closet(0);
   const Lighting lighting = lighting_of(scene, Tracing(scene));
   const std::vector<Point> window{Point(-1.5, 0, -0.5), Point(-1.5, 0, 0.5), Point(-0.5, 0, 0.5), Point(-0.5, 0, -0.5)};
@@ -213,20 +215,21 @@ TEST(SkyOpenings, ThatArriveNowhereLeaveAnError) {
 }
 
 TEST(SkyOpenings, InAThickWallLightAPointAsTheMouthThatItSees) {
-  // From 2 m before its middle the outer mouth, 2.2 m away, is all that is seen of the sky.
+  // From 2 m before its middle, the outer mouth at 2.2 m is the only visible part of the sky.
   const Scene scene = pierced_room(0.1, true);
   const SurfacePoint point{Point(0, 2, 0), -Vector::UnitY()};
   const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene)), {&point, 1});
   const double expected = 3 * pi * factor_of_square(0.1, 2.2);
-  // A binomial of 2,048 rays to the inner mouth, 17 % of which meet the lining: a share of 0.01, stratified or not.
+  // A binomial of 2,048 rays to the inner mouth, 17 % of which meet the lining: a relative error of 0.01, stratified or
+  // not.
   EXPECT_NEAR(direct.irradiance(0, 0), expected, 3 * 0.01 * expected);
   EXPECT_NEAR(direct.irradiance(0, 0), expected, 4 * direct.standard_error(0, 0));
   EXPECT_LT(direct.standard_error(0, 0), 0.01 * expected);
 }
 
 TEST(SkyOpenings, GiveNothingToTheWallTheyAreIn) {
-  // The outside of the wall sees half of the sky, whatever openings are in its plane: E = pi L to the wall. Turned, so
-  // that rounding puts the opening before the wall. 1,024 samples of a constant find it to rounding.
+  // The outside of the wall sees half of the sky, for any openings in its plane: E = pi L to the wall. It is rotated so
+  // that rounding moves the opening before the wall. 1,024 samples of a constant find it to rounding.
   const Eigen::Affine3d turned =
       Eigen::Translation3d(3, -7, 2) * Eigen::Affine3d(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   for (const bool glazed : {false, true}) {

@@ -25,7 +25,7 @@ Sky sky_of(SkyKind kind) {
   return sky;
 }
 
-// Of a horizontal plane: pi times the mean of the radiance over the square of sin^2 h and azimuth.
+// Irradiance of a horizontal plane: pi times the mean of the radiance over the square of sin^2 h and azimuth.
 double integrated(const SkyModel& sky) {
   constexpr int n = 1500;
   double sum = 0;
@@ -44,8 +44,8 @@ TEST(SkyModel, OfTheCieOvercastSkyIsThatOfMoonAndSpencer) {
 }
 
 TEST(SkyModel, OfTheCieClearSkyIsTheStandardsFormula) {
-  // L / L_z = (1 - exp(-0.32 / sin h)) (0.91 + 10 exp(-3 g) + 0.45 cos^2 g) over the same at the zenith, where g is the
-  // sun's distance of 50 degrees; at 30 degrees of altitude under the sun g = 10 degrees.
+  // L / L_z = (1 - exp(-0.32 / sin h)) (0.91 + 10 exp(-3 g) + 0.45 cos^2 g) over the same at the zenith. g is the
+  // angular distance of the sun, 50 degrees there. At an altitude of 30 degrees below the sun g = 10 degrees.
   const SkyModel sky = sky_model(sky_of(SkyKind::cie_clear), Vector::UnitZ());
   const auto factor = [](double g) { return 0.91 + 10 * std::exp(-3 * g) + 0.45 * std::cos(g) * std::cos(g); };
   const double expected =
@@ -54,8 +54,8 @@ TEST(SkyModel, OfTheCieClearSkyIsTheStandardsFormula) {
 }
 
 TEST(SkyModel, OfPerezFollowsTheTable) {
-  // By hand for clearness 3 (class 6), brightness 0.2 and the sun's zenith angle Z = 50 degrees = 0.87266, for instance
-  // a = -1.0156 - 0.3670 Z + 0.2 (1.0078 + 1.4051 Z).
+  // Clearness 3 (class 6), brightness 0.2 and the sun's zenith angle Z = 50 degrees = 0.87266, by hand: for example, a
+  // = -1.0156 - 0.3670 Z + 0.2 (1.0078 + 1.4051 Z).
   const double Z = 50 * pi / 180;
   const double a = -1.0156 - 0.3670 * Z + 0.2 * (1.0078 + 1.4051 * Z);
   const double b = 0.2875 - 0.5328 * Z + 0.2 * (-3.8500 + 3.3750 * Z);
@@ -89,7 +89,7 @@ TEST(SkyModel, GivesTheHorizontalIrradianceThatIsAsked) {
 }
 
 TEST(SkyModel, TurnsWithTheScene) {
-  // Cyclic permutation of the axes: y up, sun and direction turned alike.
+  // Cyclic permutation of the axes: y up, with the sun and the direction rotated in the same way.
   const auto turned = [](const Vector& v) { return Vector(v.y(), v.z(), v.x()); };
   Sky sky = sky_of(SkyKind::cie_clear);
   const double before = radiance(sky_model(sky, Vector::UnitZ()), direction(20, 100))[0];
@@ -105,7 +105,7 @@ TEST(SkyModel, BelowTheHorizonIsGround) {
 }
 
 TEST(SkyModel, IsNeverNegative) {
-  // For all classes, brightnesses and heights of the sun that weather files hold.
+  // For all classes, brightnesses and solar altitudes in weather files.
   for (const double clearness : {1.0, 1.1, 1.3, 1.7, 2.3, 3.5, 5.0, 8.0}) {
     for (const double brightness : {0.02, 0.1, 0.3, 0.5, 0.7, 2.0}) {
       for (const double altitude : {2.0, 30.0, 85.0}) {
@@ -147,7 +147,7 @@ TEST(SkyModel, OfPerezTakesTheBrightnessWithinTheLimitsOfTheFit) {
   EXPECT_NEAR(coefficients(3, 0.49)[0], -1.5921 + 3.2149 * 0.49, 1e-4);
 }
 
-// A facade that looks at the sun gets at most four times the horizontal irradiance. Before, some got a thousand times.
+// A facade that faces the sun receives at most four times the horizontal irradiance.
 TEST(SkyModel, OfPerezGivesEveryMeasuredIrradianceAndNoFacadeMoreThanTheSunGives) {
   for (const double direct_normal : {0.0, 100.0, 400.0, 1000.0}) {
     for (const double diffuse : {10.0, 40.0, 100.0, 300.0}) {
@@ -158,7 +158,7 @@ TEST(SkyModel, OfPerezGivesEveryMeasuredIrradianceAndNoFacadeMoreThanTheSunGives
         constexpr int n = 300;
         for (int i = 0; i < n; ++i) {
           for (int k = 0; k < n; ++k) {
-            // Equal solid angles, so that the lowest tenth of a degree counts as little as it should.
+            // Equal solid angles, so that the lowest tenth of a degree has its small weight.
             const double sine = (i + 0.5) / n;
             const double azimuth = 2 * pi * (k + 0.5) / n;
             const double across = std::sqrt(1 - sine * sine);

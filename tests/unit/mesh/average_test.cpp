@@ -25,7 +25,7 @@ Eigen::ArrayXd integral(const PatchMesh& mesh, const Field& field) {
 
 class AverageInEveryShape : public testing::TestWithParam<tiny::Shape> {};
 
-// Rounding moves a clipped corner by some 1e-16 of the extent, so that areas are off by that over the thickness.
+// Rounding moves a clipped corner by about 1e-16 of the extent, so areas have errors of that over the thickness.
 double tolerance(const tiny::Shape& shape) { return 1e-12 + 1e-15 / shape.thickness; }
 
 TEST_P(AverageInEveryShape, OverItselfIsTheIdentity) {
@@ -54,8 +54,8 @@ TEST_P(AverageInEveryShape, KeepsIntegralsAndConstants) {
 }
 
 TEST_P(AverageInEveryShape, LinearFieldsHaveTheirValuesAtTheCentroids) {
-  // The mean of x over a patch is that at its centroid, from any mesh whose patches it is made of; from another one up
-  // to the part of the patches that stick out, each of which moves x by no more than an edge.
+  // The mean of x over a patch is its value at the centroid, from any mesh whose patches fill it. From another mesh
+  // there is an error from the parts of patches that protrude, each of which moves x by at most an edge.
   const Scene& scene = GetParam().scene;
   const KeptSides sides = tiny::front_sides(scene);
   const double fine = 0.05;
@@ -98,7 +98,7 @@ TEST(Average, KeepsPolygonsAndSidesApart) {
   }
 }
 
-// A step from 0 to 1 stays between both: no slope leads beyond.
+// A step from 0 to 1 stays between both: slopes do not overshoot.
 TEST_P(AverageInEveryShape, SlopesLeadNowhereBeyondWhatIsAround) {
   const Scene& scene = GetParam().scene;
   const KeptSides sides = tiny::both_sides(scene);

@@ -15,7 +15,7 @@ using namespace test;
 
 constexpr double pi = std::numbers::pi;
 
-// From one angle to another, both ends too.
+// From one angle to another, including both ends.
 std::vector<Point> arc(int edges, double radius, double from, double to) {
   std::vector<Point> points;
   for (int k = 0; k <= edges; ++k) {
@@ -56,9 +56,9 @@ double farthest(const std::vector<Point>& points, const std::vector<Point>& outl
 
 double area(const std::vector<Point>& outline) { return area_vector(outline).norm(); }
 
-// The area is that of the outline, to rounding, and neither is farther from the other than stated. A chord c of a
-// circle is c^2 / 8r from it at most; half of what is stated goes to chords, half to the moves of corners: edges are
-// sqrt(8 r 0.005 e) long, but for what does not come out even.
+// The area is that of the outline, to rounding, and neither is farther from the other than the tolerance. A chord c of
+// a circle is at most c^2 / 8r from it. Half of the tolerance goes to chords, half to the moves of corners. So edges
+// are sqrt(8 r 0.005 e) long, rounded to whole numbers of edges.
 TEST(CoarseOutline, OfADiscHasItsAreaAndIsNear) {
   const double radius = 2;
   for (const int corners : {60, 200, 1001, 10000}) {
@@ -77,7 +77,7 @@ TEST(CoarseOutline, OfADiscHasItsAreaAndIsNear) {
   }
 }
 
-// However large patches may be, a disc is no polygon of a few corners: what counts is its own width then.
+// A disc never becomes a polygon of few corners, for patches of any size: its own width limits the edges.
 TEST(CoarseOutline, OfASmallDiscIsRound) {
   const std::vector<Point> outline = circle(500, 0.01);
   const std::vector<Point> found = coarse(scene_of(outline), 0, 1e3);
@@ -105,7 +105,7 @@ TEST(CoarseOutline, OfASquareWithCutSidesIsTheSquare) {
   EXPECT_EQ(coarse(scene_of(outline), 0, 0.5), square);
 }
 
-// Every corner is kept where there are few, where edges are as long as patches, and where the outline turns sharply.
+// Every corner is kept if there are few, if edges are as long as patches, or if the outline turns sharply.
 TEST(CoarseOutline, KeepsWhatIsNotFine) {
   EXPECT_EQ(coarse(scene_of(circle(24, 1)), 0, 10), circle(24, 1));
   EXPECT_EQ(coarse(scene_of(circle(200, 1)), 0, 2 * pi / 201), circle(200, 1));
@@ -114,7 +114,7 @@ TEST(CoarseOutline, KeepsWhatIsNotFine) {
   EXPECT_EQ(coarse(scene_of(gear), 0, 1), gear);
 }
 
-// Walls of a cylinder keep every corner of its lids; where they meet a part of the rim only, this part.
+// Walls of a cylinder keep every corner of its lids. Walls along a part of the rim keep this part.
 TEST(CoarseOutline, KeepsCornersThatAThirdFaceHas) {
   const std::vector<Point> rim = circle(200, 1);
   Scene scene = scene_of(rim);
@@ -126,8 +126,8 @@ TEST(CoarseOutline, KeepsCornersThatAThirdFaceHas) {
   EXPECT_NEAR(area(found), area(rim), 1e-13);
 }
 
-// A lamp in the round hole of a ceiling: both follow the same points, bit by bit, whichever comes first and however
-// each is turned, and the area of both stays.
+// A lamp in the round hole of a ceiling. Both follow the same points, bit by bit, in any order and with any first
+// corner. The area of both stays.
 TEST(CoarseOutline, IsTheSameForTwoFacesOnEitherSide) {
   const std::vector<Point> lamp = circle(120, 1);
   std::vector<Point> ceiling = circle(400, 3);
@@ -147,7 +147,7 @@ TEST(CoarseOutline, IsTheSameForTwoFacesOnEitherSide) {
   }
 }
 
-// A curved slit narrower than the tolerance: chords of its two sides would cross.
+// A curved slit narrower than the tolerance, whose chords on both sides would cross.
 TEST(CoarseOutline, ThatWouldCrossItselfIsNotTaken) {
   std::vector<Point> outline = {Point(0, 3, 0), Point(-3, 3, 0), Point(-3, -3, 0), Point(3, -3, 0), Point(3, 3, 0)};
   for (const Point& point : arc(100, 1.001, pi / 2, -pi / 2)) outline.push_back(point);

@@ -1,4 +1,4 @@
-// Patches and lines of contact: laws on rooms with things in them at random.
+// Patches and lines of contact: laws for rooms with random contents.
 #include "mesh/cut_polygons.h"
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
@@ -23,7 +23,7 @@ KeptSides front_sides(const Scene& scene) {
   return {std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
 }
 
-// A room with boxes that stand, hang close over the floor, cross each other, the floor and the walls.
+// A room with boxes that stand, hang close over the floor, or intersect each other, the floor and the walls.
 Scene crowded_room(unsigned seed) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2), true);
   std::mt19937 random(seed);
@@ -33,11 +33,11 @@ Scene crowded_room(unsigned seed) {
     const Vector size(0.1 + unit(random), 0.1 + unit(random), 0.1 + unit(random));
     scene = with_box(std::move(scene), low, low + size, false);
   }
-  // A wall of no thickness that ends inside the floor.
+  // A wall of no thickness that ends in the middle of the floor.
   return with_quad(std::move(scene), {Point(1.5, 0, 0), Point(1.5, 1.1, 0), Point(1.5, 1.1, 1), Point(1.5, 0, 1)});
 }
 
-// Does the inside of a patch hold a point of the line?
+// Does the interior of a patch contain a point of the line?
 bool is_crossed(const PatchMesh& mesh, PatchIndex patch, const ContactLine& line) {
   const PatchCorners corners = mesh.corner_points(patch);
   double first = 0;
@@ -56,7 +56,7 @@ bool is_crossed(const PatchMesh& mesh, PatchIndex patch, const ContactLine& line
   return (last - first) * (line.to - line.from).norm() > 1e-6;
 }
 
-// A search for the longest edge counts patches as they are, with lines that get coarser and finer on its way.
+// A search for the longest edge counts the actual patches, while lines become coarser and finer during it.
 TEST(EdgeSearchInACrowdedRoom, CountsWhatIsMeshed) {
   const Scene scene = crowded_room(3);
   const KeptSides sides = front_sides(scene);
@@ -70,8 +70,8 @@ TEST(EdgeSearchInACrowdedRoom, CountsWhatIsMeshed) {
 
 class CrowdedRooms : public testing::TestWithParam<std::tuple<unsigned, double>> {};
 
-// The patches of a polygon cover it, without gap and overlap, and none reaches over a line of contact; edges are no
-// longer than asked for.
+// The patches of a polygon cover it without gap and overlap, and none crosses a line of contact. Edges are no longer
+// than the limit.
 TEST_P(CrowdedRooms, ArePartedByTheirContacts) {
   const auto [seed, edge] = GetParam();
   const Scene scene = crowded_room(seed);
@@ -94,7 +94,7 @@ TEST_P(CrowdedRooms, ArePartedByTheirContacts) {
     }
     EXPECT_NEAR(area, whole, 1e-12 * (1 + whole)) << "polygon " << p;
     for (const ContactLine& line : contacts.on[p]) {
-      // Of longer edges lines of contact may be simpler than they are.
+      // Longer edges allow simplified lines of contact.
       if (line.gap > 0 || edge > 0.2 || (line.to - line.from).norm() < 0.2 * edge) continue;
       for (PatchIndex i = range.begin; i < range.end; ++i)
         EXPECT_FALSE(is_crossed(mesh, i, line)) << "polygon " << p << ", patch " << i;
@@ -102,7 +102,7 @@ TEST_P(CrowdedRooms, ArePartedByTheirContacts) {
   }
 }
 
-// What is cut is made of the same patches in the same order in a room that is turned and scaled.
+// A rotated and scaled room has the same patches in the same order on cut polygons.
 TEST_P(CrowdedRooms, AreTheSameElsewhere) {
   const auto [seed, edge] = GetParam();
   const Scene scene = crowded_room(seed);
@@ -112,7 +112,8 @@ TEST_P(CrowdedRooms, AreTheSameElsewhere) {
   const PatchMesh here = tessellate(scene, front_sides(scene), edge, find_contact_lines(scene, front_sides(scene)));
   const PatchMesh there =
       tessellate(other, front_sides(other), 0.37 * edge, find_contact_lines(other, front_sides(other)));
-  // Two patches in a quadrilateral whose corners lie on one circle may divide it either way, and then pair otherwise.
+  // A quadrilateral whose corners lie on one circle may be divided along either diagonal, and its triangles then pair
+  // differently.
   EXPECT_NEAR(here.size(), there.size(), 0.005 * here.size());
   PatchIndex elsewhere = 0;
   for (PatchIndex i = 0; i < here.size(); ++i) {
@@ -128,7 +129,8 @@ TEST_P(CrowdedRooms, AreTheSameElsewhere) {
 INSTANTIATE_TEST_SUITE_P(Seeds, CrowdedRooms,
                          testing::Combine(testing::Range(1U, 9U), testing::Values(0.15, 0.5, 4.0)));
 
-// Two lines that cross at too narrow an angle to tell where: all parts of both are left, and every stretch is covered.
+// Two lines cross at so small an angle that the point is uncertain. All parts of both remain, and every stretch is
+// covered.
 TEST(NodedLines, KeepLinesThatCrossAtANarrowAngle) {
   for (const double height : {0.0005, 0.002, 0.004}) {
     const std::vector<FlatLine> lines{{FlatPoint(0, 0), FlatPoint(1, 0)},
@@ -139,7 +141,7 @@ TEST(NodedLines, KeepLinesThatCrossAtANarrowAngle) {
   }
 }
 
-// A vertex on a line belongs to patches on one side of it alone.
+// A vertex on a line belongs only to patches on one side.
 TEST(CutMesh, SharesNoVerticesOverALine) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2), true);
   scene = with_quad(std::move(scene), {Point(1.5, 0, 0), Point(1.5, 3, 0), Point(1.5, 3, 2), Point(1.5, 0, 2)});
@@ -153,7 +155,7 @@ TEST(CutMesh, SharesNoVerticesOverALine) {
   }
 }
 
-// Two halves of a floor share their edge, also where a wall crosses both.
+// Two halves of a floor share their edge, even if a wall crosses both.
 TEST(CutMesh, NeighboursShareTheEndsOfLines) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 2, 0), Point(0, 2, 0)});
@@ -171,7 +173,7 @@ TEST(CutMesh, NeighboursShareTheEndsOfLines) {
   int single = 0;
   for (const auto& [vertex, both] : polygons) single += both == 3 ? 0 : 1;
   EXPECT_GE(polygons.size(), 9U);
-  EXPECT_LE(single, 2);  // those of the side that lost the vertex on the line
+  EXPECT_LE(single, 2);  // on the side that lost the line's vertex
 }
 
 }  // namespace

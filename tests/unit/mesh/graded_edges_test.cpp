@@ -74,7 +74,7 @@ TEST(GradedEdges, ShrinkPatchesTowardsTheOneEdgeThatMeetsAWall) {
   expect_near(places_on(mesh, 0, 0), {0, 0.25, 0.5, 0.75, 1});
 }
 
-// Neither a fold that is nearly flat, nor a wall that goes down, nor one whose lit side looks away.
+// A nearly flat fold, a wall that goes down and a wall whose lit side faces away.
 TEST(GradedEdges, LeaveOtherEdgesEven) {
   for (const Point& top : {Point(0, -1, 0.5), Point(0, 0, -1), Point(0, -1, 0)})
     expect_near(places_on(graded_mesh(floor_and_wall(top), 0.25), 0, 1), {0, 0.25, 0.5, 0.75, 1});
@@ -83,7 +83,7 @@ TEST(GradedEdges, LeaveOtherEdgesEven) {
   expect_near(places_on(graded_mesh(averted, 0.25), 0, 1), {0, 0.25, 0.5, 0.75, 1});
 }
 
-// The backs of a box see each other as the fronts of a room do.
+// The backs of a box see each other like the fronts of a room.
 TEST(GradedEdges, AreThoseThatKeptSidesSee) {
   const Scene solid = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 1, 1), false);
   const PatchMesh outside = graded_mesh(solid, 0.25);
@@ -92,7 +92,7 @@ TEST(GradedEdges, AreThoseThatKeptSidesSee) {
   EXPECT_NE(graded_mesh(solid, 0.25, false, true).vertices, tessellate(solid, kept(solid, false, true), 0.25).vertices);
 }
 
-// Two halves of a floor, of which one alone meets a wall in its far corner: along their seam both are even, and share
+// Two halves of a floor. Only one of them meets a wall, in its far corner. Both are even along their seam, and share
 // their points.
 TEST(GradedEdges, AgreeAlongSeams) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
@@ -106,7 +106,7 @@ TEST(GradedEdges, AgreeAlongSeams) {
   const PatchMesh graded = graded_mesh(two_walls, 0.25);
   EXPECT_LT(places_on(graded, 0, 1)[1], 0.1);
   expect_near(places_on(graded, 1, 1), places_on(graded, 0, 1));
-  // 5 x 9 vertices on the floor and on the wall, as the seams have theirs once.
+  // 5 x 9 vertices on the floor and on the wall, because each seam has its vertices once.
   EXPECT_EQ(graded.vertices.size(), 2 * 45u);
 }
 

@@ -40,8 +40,8 @@ Point mix(const PatchCorners& patch, std::mt19937& random) {
 }
 
 TEST(Interpolate, ReproducesLinearFunctions) {
-  // Bilinear weights reproduce linear functions in every convex quadrilateral. Weights are known to rounding over the
-  // patch's relative thickness: 1e-15 over 1 / 10 or, in slivers, over their own.
+  // Bilinear weights reproduce linear functions in every convex quadrilateral. Their error is rounding over the patch's
+  // relative thickness: 1e-15 over 1 / 10, or over the thickness of a sliver.
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
     const PatchMesh mesh = tessellate(shape.scene, tiny::both_sides(shape.scene), 0.2);
     const Field values = linear_at_vertices(mesh);
@@ -69,8 +69,8 @@ TEST(Interpolate, TakesTheCornersValueAtACorner) {
     for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
       for (const std::uint32_t vertex : mesh.corners[patch]) {
         const auto value = interpolated(mesh, values, patch, mesh.vertices[vertex]);
-        // Rounding of 1e-16 in position over a thickness of 1e-6 x 0.3 at least; at a straight corner of a
-        // quadrilateral the inverse has a square root there: (1e-16)^(1/2).
+        // Rounding of 1e-16 in position over a thickness of at least 1e-6 x 0.3. At a straight corner of a
+        // quadrilateral the inverse has a square root: (1e-16)^(1/2).
         EXPECT_NEAR(value[0], values(vertex, 0), 7 * 3e-8) << shape.name;
       }
     }
@@ -99,12 +99,12 @@ TEST(VertexMeans, AreExactForConstants) {
   const Scene scene = tiny::in_triangles(tiny::box({4, 3, 2.5}));
   const PatchMesh mesh = tessellate(scene, tiny::both_sides(scene), 0.5);
   const Field constant = Field::Constant(mesh.size(), 3, 0.7);
-  // A mean of some ten equal numbers: a few roundings.
+  // A mean of about ten equal numbers: a few roundings.
   EXPECT_LE((vertex_means(mesh, constant, areas(mesh)) - 0.7).abs().maxCoeff(), 1e-15);
 }
 
 TEST(VertexMeans, AreLinearInsideASymmetricGrid) {
-  // In a regular grid the four patches around an inner vertex lie symmetric about it, so means of a linear function at
+  // In a regular grid the four patches around an inner vertex are symmetric about it. So means of a linear function at
   // the centroids are exact there.
   const Scene square = tiny::polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   const PatchMesh mesh = tessellate(square, tiny::front_sides(square), 0.1);

@@ -16,7 +16,7 @@ PatchIndex patches_for(const Scene& scene, PatchIndex wanted) {
 TEST(MaxEdgeFor, IsWithinTenPercent) {
   for (const PatchIndex wanted : {300u, 1000u, 5000u}) {
     for (const tiny::Shape& shape : tiny::polygon_shapes()) {
-      // A grid has n^2 or n m patches: near 300 the steps are still below 12 %.
+      // A grid has n^2 or n m patches, so near 300 the steps are still below 12 %.
       EXPECT_NEAR(patches_for(shape.scene, wanted), wanted, 0.1 * wanted) << shape.name;
     }
     for (const Scene& scene : {tiny::box({4, 3, 2.5}), tiny::in_triangles(tiny::box({4, 3, 2.5}))}) {
@@ -49,7 +49,7 @@ std::vector<Scene> rooms_and_shapes() {
   return scenes;
 }
 
-// Counted without a mesh, and with what is remembered from other edges.
+// Counted without a mesh, and with stored counts for other edges.
 TEST(EdgeSearch, NestedPatchesAreThoseOfTheNestedMesh) {
   for (const Scene& scene : rooms_and_shapes()) {
     const KeptSides sides = tiny::both_sides(scene);
@@ -62,7 +62,7 @@ TEST(EdgeSearch, NestedPatchesAreThoseOfTheNestedMesh) {
   }
 }
 
-// Where a search has been before does not matter.
+// The result does not depend on earlier searches.
 TEST(EdgeSearch, RemembersNothingThatIsOfOtherEdges) {
   for (const Scene& scene : rooms_and_shapes()) {
     const KeptSides sides = tiny::front_sides(scene);
@@ -80,7 +80,7 @@ TEST(EdgeSearch, FindsAsManyNestedPatchesAsAreWanted) {
     const ContactLines no_contacts;
     EdgeSearch search(scene, sides, no_contacts);
     const PatchMesh mesh = nest(tessellate(scene, sides, search.nested_edge_for(3000))).patches;
-    // One triangle is a grid of n^2, each in four: from 27^2 to 28^2 the step is 7 %, the nearer end 4 % away.
+    // One triangle is a grid of n^2, each in four. From 27^2 to 28^2 the step is 7 %, so the nearer end is within 4 %.
     EXPECT_NEAR(mesh.size(), 3000, 0.05 * 3000) << scene.file;
   }
 }

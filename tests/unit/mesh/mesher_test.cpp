@@ -39,7 +39,7 @@ std::set<std::array<double, 3>> corner_set(const PatchMesh& mesh, PatchIndex pat
   return points;
 }
 
-// 1 inside, 0 outside: the sum of the angles under which the edges are seen.
+// 1 inside, 0 outside: the sum of the angles subtended by the edges.
 int winding_number(const std::vector<Point>& polygon, const Vector& normal, const Point& eye) {
   double angle = 0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -74,8 +74,8 @@ std::vector<Shape> plump_shapes() {
 TEST_P(EveryShape, KeepsTheArea) {
   const PatchMesh mesh = tessellate(scene(), tiny::both_sides(scene()), max_edge());
   const double area = area_vector(corner_points(scene(), 0)).norm();
-  // Points are rounded by about 1e-16 of the diameter d (below 5), which on a boundary of at most 4 d sums to less than
-  // 1e-15 d^2.
+  // Points are rounded by about 1e-16 of the diameter d (below 5). Over a boundary of at most 4 d this adds up to less
+  // than 1e-15 d^2.
   const double tolerance = 1e-12 * area + 1e-15 * bounds(scene()).diagonal().squaredNorm();
   for (const Side side : {Side::front, Side::back}) {
     const PatchRange range = mesh.patches_on(0, side);
@@ -138,14 +138,14 @@ TEST_P(EveryPlumpShape, IsTheSameAfterRigidMotionAndScaling) {
   const PatchMesh other = tessellate(other_scene, tiny::front_sides(other_scene), scale * max_edge());
   ASSERT_EQ(mesh.size(), other.size());
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
-    // Positions are rounded by 1e-15 of some 10 units; the smallest patches are some 1e-4 units^2.
+    // Positions of about 10 units are rounded by 1e-15. The smallest patches have about 1e-4 units^2.
     EXPECT_NEAR(other.area[patch], scale * scale * mesh.area[patch], 1e-9 * other.area[patch]);
   }
 }
 
 TEST_P(EveryShape, NeighboursInsideMeetEdgeToEdge) {
   const PatchMesh mesh = tessellate(scene(), tiny::front_sides(scene()), max_edge());
-  // Euler's formula for a disk (V - E + F = 1), with E counted from the patches: holds only without T-junctions.
+  // Euler's formula for a disk (V - E + F = 1), with E counted from the patches, holds only without T-junctions.
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   std::set<std::uint32_t> vertices;
   for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
@@ -157,7 +157,7 @@ TEST_P(EveryShape, NeighboursInsideMeetEdgeToEdge) {
     }
   }
   EXPECT_EQ(vertices.size(), mesh.vertices.size());
-  // The ring's slit is united along its length, which makes it a true ring: V - E + F = 0.
+  // The ring's slit is merged along its length, which makes it a true ring: V - E + F = 0.
   const int euler = std::get<0>(GetParam()).name == "ring_with_slit" ? 0 : 1;
   EXPECT_EQ(static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.size()), euler);
 }
@@ -192,7 +192,8 @@ TEST(Mesher, QuadsStayQuadsAndTrianglesStayTriangles) {
 }
 
 TEST(Mesher, TrianglesAreWellShaped) {
-  // Equilateral but near the boundary, where halving the longest edge of Delaunay triangles leaves over 20 degrees.
+  // Triangles are equilateral except near the boundary, where halving the longest edge of Delaunay triangles leaves
+  // over 20 degrees.
   const double least_sine = std::sin(20 * std::numbers::pi / 180);
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
     if (shape.name != "trapezoid" && shape.name != "l_shape" && shape.name != "hexagon") continue;
@@ -200,7 +201,8 @@ TEST(Mesher, TrianglesAreWellShaped) {
     for (PatchIndex patch = 0; patch < mesh.size(); ++patch) {
       const auto& [a, b, c, unused] = mesh.corner_points(patch).points;
       const double ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm();
-      // Twice the area is the product of two sides and the sine between them; the smallest is between the longest two.
+      // Twice the area is the product of two sides and the sine of the angle between them. The smallest angle is
+      // between the longest two.
       EXPECT_GE(2 * mesh.area[patch] * std::min({ab, bc, ca}) / (ab * bc * ca), least_sine) << shape.name;
     }
   }
@@ -221,7 +223,7 @@ TEST(Mesher, MeshesAnyStarShapedPolygon) {
     }
     const Scene scene = tiny::polygon(corners);
     const double signed_area = area_vector(corners).z();
-    if (signed_area <= 0) continue;  // three corners need not go around the middle
+    if (signed_area <= 0) continue;  // three corners need not enclose the middle
     const double max_edge = std::exp(-4 * share(random));
     const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), max_edge);
     double sum = 0;
@@ -235,8 +237,8 @@ TEST(Mesher, MeshesAnyStarShapedPolygon) {
 }
 
 TEST(Mesher, EndsForASelfIntersectingPolygon) {
-  // Two triangles that touch crosswise, 3.375 and 0.375 m^2, turned against each other: no mesh is right, but no patch
-  // is turned over, and the area is between that of the larger one less the other and that of both.
+  // Two triangles of 3.375 and 0.375 m^2 touch crosswise, with opposite orientation. No mesh is correct, but no patch
+  // is inverted. The area is between the difference of both areas and their sum.
   const Scene scene = tiny::polygon({{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 1, 0}});
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
   double sum = 0;

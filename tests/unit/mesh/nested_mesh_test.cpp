@@ -41,7 +41,7 @@ bool same_corners(const PatchMesh& a, PatchIndex i, const PatchMesh& b, PatchInd
          std::equal(one.points.begin(), one.points.begin() + one.count, other.points.begin());
 }
 
-// The patches of a parent are those that name it, and fill it.
+// The patches of a parent are those that refer to it, and they fill it.
 void expect_consistent(const NestedMesh& mesh) {
   ASSERT_EQ(mesh.first_patch.size(), mesh.parents.size() + 1);
   ASSERT_EQ(mesh.parent.size(), mesh.patches.size());
@@ -80,7 +80,7 @@ TEST(NestedMesh, StaysConsistentWhenItIsRefined) {
   }
 }
 
-// Parents that were cut before are small, but not as small faces of a model are: they are cut again.
+// Parents from earlier cuts are small, but they are not small faces of a model: they are cut again.
 TEST(NestedMesh, TheSamePlaceCanBeCutAgainAndAgain) {
   NestedMesh mesh = nest(mesh_of(large_and_small(), 2));
   double smallest = 1;
@@ -96,14 +96,14 @@ TEST(NestedMesh, TheSamePlaceCanBeCutAgainAndAgain) {
       if (mesh.patches.polygon[i] == 0) on_floor = std::min(on_floor, mesh.patches.area[i]);
       on_small_face += mesh.patches.polygon[i] == 1 ? 1 : 0;
     }
-    // Sides are powers of two: exact.
+    // Sides are powers of two, so sums are exact.
     EXPECT_EQ(on_floor, smallest / 4);
     EXPECT_EQ(on_small_face, 1);
     smallest = on_floor;
   }
 }
 
-// The law that lets exchange areas be taken over: a patch that has a place before is the same, to the last bit.
+// Law that allows the reuse of exchange areas: a patch with an earlier place is the same to the last bit.
 TEST(NestedMesh, PatchesWithAPlaceAreTheSameAsBefore) {
   const Scene scene = test::furnished_room(0.5);
   NestedMesh mesh = nest(mesh_of(scene, 1));
@@ -120,7 +120,7 @@ TEST(NestedMesh, PatchesWithAPlaceAreTheSameAsBefore) {
       EXPECT_EQ(finer.mesh.patches.polygon[i], mesh.patches.polygon[before]);
     }
     EXPECT_LE(*std::max_element(taken.begin(), taken.end()), 1);
-    // Marked parents are cut, the most of the others stay.
+    // Marked parents are cut, and most of the others stay.
     for (PatchIndex i = 0; i < mesh.patches.size(); ++i) {
       EXPECT_TRUE(marks[mesh.parent[i]] == 0 || taken[i] == 0);
     }
@@ -162,7 +162,8 @@ TEST(NestedMesh, MeansAreByArea) {
   Field values(mesh.patches.size(), 2);
   for (PatchIndex i = 0; i < mesh.patches.size(); ++i) values.row(i) << 1 + i % 5, 3;
   const Field means = means_by_parent(mesh, values, area);
-  // What is spread over the patches and summed again is area times mean; some roundings of values up to 5.
+  // Values that are spread over the patches and summed again give area times mean, within a few roundings of values up
+  // to 5.
   const Field back = summed_by_parent(mesh, of_parents(mesh, means).colwise() * area.array());
   const Field sums = summed_by_parent(mesh, values.colwise() * area.array());
   EXPECT_LT((back - sums).abs().maxCoeff(), 20 * std::numeric_limits<double>::epsilon());

@@ -10,7 +10,7 @@
 namespace patchlight::patch_lookup_test {
 namespace {
 
-// A point of a patch, not nearer to an edge than a twentieth of the patch's height there.
+// A point of a patch, at least a twentieth of the patch's height away from every edge.
 Point inner_point(const PatchCorners& patch, std::mt19937& random) {
   std::uniform_real_distribution<double> weight(0.1, 1);
   Point sum = Point::Zero();
@@ -72,7 +72,7 @@ TEST_P(LookupInEveryShape, FindsAPatchAtItsCornersAndJustOutside) {
                                     Vector(0, -1, 0), Vector(0, 0, 1), Vector(0, 0, -1)}) {
       const auto patch = lookup.patch_at(0, Side::front, corner + 1e-6 * extent * direction);
       ASSERT_TRUE(patch);
-      // One of the patches at the corner. Patches thinner than the offset may be passed.
+      // One of the patches at the corner. The offset may exceed the thickness of thin patches.
       if (GetParam().thickness == 1) {
         EXPECT_EQ(closest_corner(*patch, corner), 0);
       }
@@ -92,7 +92,7 @@ TEST(PatchLookup, FarOutsideFindsTheNearestPatch) {
 }
 
 TEST(PatchLookup, WidensTheSearchInTheMouthOfAConcavePolygon) {
-  // The mouth of the U is far from every patch; its middle is a little nearer to the left arm.
+  // The mouth of the U is far from every patch. Its middle is slightly nearer to the left arm.
   const Scene scene = tiny::polygon(
       {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2.9, 3, 0}, {2.9, 0.1, 0}, {0.1, 0.1, 0}, {0.1, 3, 0}, {0, 3, 0}});
   const PatchMesh mesh = tessellate(scene, tiny::front_sides(scene), 0.05);
@@ -104,8 +104,7 @@ TEST(PatchLookup, WidensTheSearchInTheMouthOfAConcavePolygon) {
   EXPECT_EQ(lookup.patches_at({&in_the_mouth, 1}).front(), *patch);
 }
 
-// At the place of a map, where single precision tells half a metre apart, and not a parallelogram, so that cells are
-// searched.
+// Map coordinates, where single precision resolves only 0.5 m. The shape is no parallelogram, so cells are searched.
 TEST(PatchLookup, FindsPatchesFarFromTheOrigin) {
   const Point at(4e5, 5e6, 300);
   const Scene scene = tiny::polygon({at, at + Vector(1, 0, 0), at + Vector(1.2, 0.9, 0), at + Vector(0, 1, 0)});

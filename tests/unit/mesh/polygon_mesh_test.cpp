@@ -9,7 +9,7 @@
 namespace patchlight::polygon_mesh_test {
 namespace {
 
-// Lines end where other faces do, to rounding of these: one that runs along an edge may begin a little outside.
+// Lines end at other faces, within their rounding: a line along an edge may begin slightly outside.
 TEST(PolygonMesh, HasNoPatchThatIsTurnedOver) {
   for (const double outside : {-1e-8, -4e-10, -1e-12, 0.0, 1e-12, 4e-10, 1e-8}) {
     const Vector up(0, 0, 1);
@@ -21,12 +21,12 @@ TEST(PolygonMesh, HasNoPatchThatIsTurnedOver) {
     points.insert(points.end(), mesh.inner.begin(), mesh.inner.end());
     double area = 0;
     for (const auto& [a, b, c, d] : mesh.patches) {
-      // Of a triangle c = d.
+      // Triangles have c = d.
       const double of_patch = 0.5 * up.dot((points[c] - points[a]).cross(points[d] - points[b]));
       EXPECT_GT(of_patch, 0) << outside;
       area += of_patch;
     }
-    // What lies outside, and what it covers once more.
+    // The part outside, and the overlap.
     EXPECT_NEAR(area, 0.1, 1e-12 + 2 * std::abs(outside)) << outside;
   }
 }

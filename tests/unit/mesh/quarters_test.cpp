@@ -8,7 +8,7 @@
 namespace patchlight::quarters_test {
 namespace {
 
-// Those into which refine() cuts a patch, triangles and quadrilaterals, and each is told by the points in it.
+// refine() cuts triangles and quadrilaterals into these. The points in each quarter identify it.
 TEST(Quarters, AreThoseOfRefine) {
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
     if (shape.thickness < 1) continue;

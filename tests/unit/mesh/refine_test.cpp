@@ -15,7 +15,7 @@
 namespace patchlight::refine_test {
 namespace {
 
-// Shapes are some units in size, so that a corner is known to some 1e-16, and areas to that times the perimeter.
+// Shapes have a size of a few units, so a corner is known to about 1e-16, and an area to that times the perimeter.
 constexpr double rounding = 1e-14;
 
 // One in `rarity` patches.
@@ -25,7 +25,7 @@ std::vector<std::uint8_t> random_marks(const PatchMesh& mesh, std::uint64_t seed
   return marks;
 }
 
-// Refined at random so many times.
+// Refined at random this many times.
 PatchMesh refined_at_random(PatchMesh mesh, int times) {
   for (int k = 0; k < times; ++k) mesh = refine(mesh, random_marks(mesh, static_cast<std::uint64_t>(k), 5)).mesh;
   return mesh;
@@ -54,7 +54,7 @@ std::set<std::uint32_t> vertices_of(const PatchMesh& mesh) {
   return used;
 }
 
-// Where between the ends of an edge a vertex lies, as a share of it; nothing where it lies elsewhere.
+// The position of a vertex between the ends of an edge, as a fraction. Empty if it is elsewhere.
 std::optional<double> place_on(const PatchMesh& mesh, const Edge& edge, std::uint32_t vertex) {
   if (vertex == edge[0] || vertex == edge[1]) return std::nullopt;
   const Point& a = mesh.vertices[edge[0]];
@@ -65,7 +65,7 @@ std::optional<double> place_on(const PatchMesh& mesh, const Edge& edge, std::uin
   return beside || share < 1e-6 || share > 1 - 1e-6 ? std::nullopt : std::optional(share);
 }
 
-// The vertices of patches that hang on an edge, by where they lie.
+// The positions of vertices of patches that hang on an edge.
 std::vector<double> hanging_on(const PatchMesh& mesh, const Edge& edge, const std::set<std::uint32_t>& vertices) {
   std::vector<double> places;
   for (const std::uint32_t vertex : vertices) {
@@ -74,7 +74,7 @@ std::vector<double> hanging_on(const PatchMesh& mesh, const Edge& edge, const st
   return places;
 }
 
-// Shapes whose vertices are told apart by `rounding`, with a mesh each.
+// Shapes whose vertices differ by more than `rounding`, with a mesh each.
 std::vector<std::pair<std::string, PatchMesh>> coarse_meshes() {
   std::vector<std::pair<std::string, PatchMesh>> meshes;
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
@@ -95,7 +95,7 @@ TEST(Refine, CutsEveryPatchIntoFourThatFillIt) {
       EXPECT_EQ(finer.side[i], mesh.side[parent]);
       EXPECT_EQ(finer.material[i], mesh.material[parent]);
       EXPECT_EQ(finer.normal[i], mesh.normal[parent]);
-      // Same winding, no overlap: areas counted with their sign are positive and add up.
+      // Signed areas are positive and add up: the winding is the same, and there is no overlap.
       EXPECT_GT(area_vector(finer.corner_points(i)).dot(finer.normal[i]), 0);
       EXPECT_NEAR(area_of(finer, {4 * parent, 4 * parent + 4}), mesh.area[parent], rounding) << shape.name;
     }
@@ -133,7 +133,7 @@ TEST(Refine, PartsStandWhereTheirParentStood) {
       for (const Side side : {Side::front, Side::back}) {
         const PatchRange range = finer.mesh.patches_on(0, side);
         for (PatchIndex i = range.begin; i < range.end; ++i) EXPECT_EQ(finer.mesh.side[i], side);
-        // A patch that is cut leaves each of its parts with rounding of its own.
+        // Each part of a cut patch has its own rounding.
         EXPECT_NEAR(area_of(finer.mesh, range), area / 2, rounding * std::sqrt(finer.mesh.size())) << shape.name;
       }
       mesh = finer.mesh;
@@ -141,7 +141,7 @@ TEST(Refine, PartsStandWhereTheirParentStood) {
   }
 }
 
-// The law of balance, from the positions alone: at most one vertex hangs on an edge, in its middle.
+// Law of balance, from the positions alone: at most one vertex hangs on an edge, in its middle.
 TEST(Refine, NeighboursAreOneLevelApart) {
   for (const auto& [name, coarse] : coarse_meshes()) {
     const PatchMesh mesh = refined_at_random(coarse, 4);
@@ -160,7 +160,7 @@ TEST(Refine, NeighboursAreOneLevelApart) {
   }
 }
 
-// Nothing is cut without need: an edge of a patch that was not marked has two vertices of others on it.
+// Only necessary cuts: an edge of an unmarked cut patch has two vertices of other patches on it.
 TEST(Refine, CutsBesidesTheMarkedOnlyWhatBalanceTakes) {
   int beside = 0;
   for (const auto& [name, coarse] : coarse_meshes()) {
@@ -185,7 +185,7 @@ TEST(Refine, CutsBesidesTheMarkedOnlyWhatBalanceTakes) {
   EXPECT_GT(beside, 0);
 }
 
-// Of any shape, also where one side alone is marked.
+// Sheets of any shape, even if only one side is marked.
 TEST(Refine, CutsBothSidesOfASheetAlike) {
   for (const tiny::Shape& shape : tiny::polygon_shapes()) {
     if (shape.thickness < 1) continue;
@@ -203,7 +203,7 @@ TEST(Refine, CutsBothSidesOfASheetAlike) {
   }
 }
 
-// What is drawn between vertices has no step at an edge with a hanging vertex.
+// A field drawn between vertices has no step at an edge with a hanging vertex.
 TEST(Refine, HangingVerticesTakeTheMeanOfTheirEdge) {
   for (const auto& [name, coarse] : coarse_meshes()) {
     const PatchMesh mesh = refined_at_random(coarse, 4);

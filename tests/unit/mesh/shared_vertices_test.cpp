@@ -32,7 +32,7 @@ std::size_t shared_vertices(const PatchMesh& mesh, PolygonIndex a, PolygonIndex 
   return count;
 }
 
-// Two unit squares that share an edge; the second is bent up by `degrees`.
+// Two unit squares that share an edge. The second is bent up by `degrees`.
 Scene hinge(double degrees) {
   const double angle = degrees * std::numbers::pi / 180;
   const double x = 1 + std::cos(angle), z = std::sin(angle);
@@ -45,7 +45,7 @@ std::size_t shared_at_hinge(const Scene& scene, Side side = Side::front) {
 }
 
 TEST(SharedVertices, NeighboursHaveTheSamePointsOnTheirEdge) {
-  // A square, a scalene triangle and a pentagon around one edge, with vertices of their own and another winding each.
+  // A square, a scalene triangle and a pentagon around one edge, each with its own vertices and another winding.
   const Point a(0.1, 0.2, 0.3), b(1.3, -0.4, 0.9);
   const Vector up(0.3, 1, 0.2), out(0.5, 0.1, 1);
   const Scene scene = tiny::scene_of({a, b, b + up, a + up, b, a, a + 0.37 * out + 0.1 * (b - a), a, b, b - 0.5 * out,
@@ -72,7 +72,7 @@ TEST(SharedVertices, FlatAndNearlyFlatNeighboursShareTheirEdge) {
   EXPECT_EQ(shared_at_hinge(hinge(29)), 11u);
   EXPECT_EQ(shared_at_hinge(hinge(-29)), 11u);
   EXPECT_EQ(shared_at_hinge(hinge(29), Side::back), 11u);
-  // The two halves of the first square: a diagonal of ceil(1.414 / 0.1) parts.
+  // The two halves of the first square have a diagonal of ceil(1.414 / 0.1) parts.
   EXPECT_EQ(shared_at_hinge(tiny::in_triangles(hinge(0))), 16u);
 }
 
@@ -98,7 +98,7 @@ TEST(SharedVertices, AnEdgeOfThreePolygonsSeparates) {
   EXPECT_EQ(shared_at_hinge(scene), 0u);
 }
 
-// As a ceiling that ends at the walls of two storeys, of its own paint, whichever of its sides are kept.
+// A ceiling of its own paint that ends at the walls of two storeys, for any kept sides.
 TEST(SharedVertices, AWallOnTheEdgeSeparatesTheSideOnWhichItStands) {
   for (const double degrees : {0.0, 25.0, -25.0}) {
     Scene scene = hinge(degrees);
@@ -119,7 +119,7 @@ TEST(SharedVertices, AWallOnTheEdgeSeparatesTheSideOnWhichItStands) {
   }
 }
 
-// A sheet of another paint in the plane of both takes no light from either.
+// A sheet of another paint in the common plane takes no light from either.
 TEST(SharedVertices, AThirdPolygonInTheirPlaneDoesNotSeparate) {
   Scene scene = hinge(0);
   scene.materials.resize(2);
@@ -164,7 +164,7 @@ TEST(SharedVertices, AClosedPrismIsSmoothAroundButNotAtItsLids) {
     EXPECT_EQ(shared_vertices(mesh, p, (p + 1) % 16), 6u);
     EXPECT_EQ(shared_vertices(mesh, p, 16), 0u);
   }
-  // A facet is 2 sin(pi / 16) = 0.39 wide: 2 parts; it is 1 high: 5 parts. 32 columns of 6 points.
+  // A facet is 2 sin(pi / 16) = 0.39 wide, so it has 2 parts. It is 1 high, so it has 5 parts. 32 columns of 6 points.
   EXPECT_EQ(mantle.size(), 32u * 6);
 }
 

@@ -15,14 +15,14 @@
 // Binary glTF, read by the specification.
 namespace patchlight::test {
 
-// A .glb file taken apart.
+// The parts of a .glb file.
 struct Glb {
   nlohmann::json json;
   std::string binary;
 };
 
-// The container of the glTF 2.0 specification, section 4.4: header of 12 bytes, chunks of length, type and data, each
-// a multiple of four bytes.
+// The container of the glTF 2.0 specification, section 4.4: a header of 12 bytes, then chunks of length, type and data,
+// each a multiple of four bytes.
 inline Glb taken_apart(const std::string& bytes) {
   EXPECT_EQ(bytes.substr(0, 4), "glTF");
   EXPECT_EQ(number_at<std::uint32_t>(bytes, 4), 2U);
@@ -128,7 +128,7 @@ inline void expect_valid_primitive(const Glb& glb, const nlohmann::json& primiti
   EXPECT_EQ(primitive["mode"], 4);
 }
 
-// Sections 3.8 and 3.9: pictures in views of their own, extensions that are declared.
+// Sections 3.8 and 3.9: textures in their own buffer views, and declared extensions.
 inline void expect_valid_materials(const Glb& glb) {
   bool has_extension = false;
   for (const auto& material : glb.json["materials"]) {
@@ -150,7 +150,7 @@ inline void expect_valid_materials(const Glb& glb) {
   EXPECT_EQ(glb.json.contains("extensionsUsed"), has_extension);
 }
 
-// What a validator of glTF 2.0 asks of files like ours.
+// The checks of a glTF 2.0 validator for files of this kind.
 inline void expect_valid(const Glb& glb) {
   EXPECT_EQ(glb.json["asset"]["version"], "2.0");
   expect_valid_buffers(glb);

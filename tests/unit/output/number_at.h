@@ -7,7 +7,7 @@
 
 namespace patchlight::test {
 
-/// A number as it stands in a binary file.
+/// A number in the bytes of a binary file.
 template <class Number>
 Number number_at(const std::string& bytes, std::size_t offset) {
   Number number{};

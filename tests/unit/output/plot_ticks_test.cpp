@@ -13,7 +13,7 @@ std::string with_minus(std::string text) {
   return text;
 }
 
-// What the reader of a label takes it for: "5", "10" with a raised "-3", "2x10" with a raised "6".
+// The value that a reader takes from a label: "5", "10" with a raised "-3", "2x10" with a raised "6".
 double value_of_label(const Tick& tick) {
   if (tick.exponent.empty()) return std::stod(with_minus(tick.text));
   const double power = std::pow(10.0, std::stod(with_minus(tick.exponent)));
@@ -42,7 +42,7 @@ TEST(LinearTicks, AreMultiplesOfOneTwoOrFivePowersOfTenAndReachTheEnds) {
       ASSERT_LE(ticks.size(), 9U);
       const double step = ticks[1].value - ticks[0].value;
       const double digit = step / std::pow(10.0, std::floor(std::log10(step) + 1e-6));
-      // Values up to 1000 spans away are rounded to 1000 * 2^-52 of the span, steps are a tenth of it.
+      // Values up to 1000 spans away are rounded to 1000 * 2^-52 of the span. Steps are a tenth of it.
       const double rounding = 1e-10 * step;
       EXPECT_LT(std::min({std::abs(digit - 1), std::abs(digit - 2), std::abs(digit - 5)}), 1e-9) << step;
       EXPECT_NEAR(ticks.front().value, range.lower, rounding);

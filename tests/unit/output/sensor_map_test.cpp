@@ -45,8 +45,8 @@ TEST(Isoline, OfASaddleDoesNotCrossItself) {
   for (const double level : {0.4, 0.6}) {
     const auto pieces = isoline(values, level);
     ASSERT_EQ(pieces.size(), 2U);
-    // Below the middle the two corners that are high hang together: lines cut off the other two, and the other way
-    // round.
+    // Below the middle the two high corners are connected: lines cut off the other two. Above it, lines cut off the
+    // high ones.
     for (const auto& [from, to] : pieces) {
       const Eigen::Vector2d middle = (from + to) / 2;
       const bool is_near_high = (middle[0] < 0.5) == (middle[1] < 0.5);
@@ -118,8 +118,8 @@ TEST(SensorMap, TakesARangeAndRefusesWhatHasNoMap) {
   EXPECT_THROW(write_sensor_map(folder.path() / "c.svg", points, some.readings), OutputError);
 }
 
-// Scale, north and walls stand in the file where they are known; what is far off does not.
-// How far the first line of this kind goes to the right: from the first group's place to the last one's.
+// Scale, north and walls are in the file if they are known. Distant walls are not. Length of the first line of this
+// kind to the right: from the first group's position to the last one's.
 double length_of(const std::string& svg, const std::string& kind) {
   std::smatch found;
   EXPECT_TRUE(std::regex_search(svg, found, std::regex(kind)));
@@ -140,7 +140,7 @@ TEST(SensorMap, ShowsTheWallsAroundAGridAndItsScale) {
   const std::string walls = drawn({.sections = {{wall}}});
   EXPECT_EQ(drawn({.sections = {{wall, far_off}}}), walls);
   EXPECT_NE(drawn({.sections = {{far_off}}}), walls);
-  // The bar is a round part of the wall's three metres: 0.5 m.
+  // The bar is a round fraction of the wall's 3 m: 0.5 m.
   const double of_wall = length_of(walls, R"-(d="M ([\d.]+) ([\d.]+) L (?=[\d.]+ \2 "/)([\d.]+))-");
   const double of_bar = length_of(walls, R"-(M ([\d.]+) [\d.]+ L \1 [\d.]+ M \1 ([\d.]+) L (?=[\d.]+ \2 M)([\d.]+))-");
   EXPECT_NEAR(3 * of_bar / of_wall, 0.5, 1e-3);

@@ -35,7 +35,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// While it lives no file can grow beyond `bytes`: writing fails as on a full disk.
+/// While this object exists, no file can grow beyond `bytes`: writing fails like on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(std::size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -22,7 +22,7 @@ inline Scene tiny_scene() {
   return scene;
 }
 
-/// A simulation of it with invented irradiances and B = E + rho o H: no solver is asked.
+/// A simulation of it with invented irradiances and B = E + rho o H, without a solver.
 inline Simulation tiny_simulation() {
   const Scene scene = tiny_scene();
   Simulation simulation;

@@ -80,7 +80,7 @@ TEST(WholeFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-// A file that a killed run left is not locked; one that somebody writes is.
+// A killed run leaves its file unlocked. A file that is being written is locked.
 TEST(CheckWritable, RemovesLeftTemporariesButNoneInUse) {
   const TemporaryFolder folder;
   put(folder.path() / ".patchlight-1-0.vtp", "half");
@@ -115,7 +115,7 @@ TEST(WholeFiles, OfOneFolderByTwoNamesAppearTogether) {
   EXPECT_EQ(std::distance(fs::directory_iterator(place), fs::directory_iterator()), 2);
 }
 
-// In the place of the folder stands a link to itself, so that no name in it can be looked up any more.
+// A link to itself replaces the folder, so no name in it can be looked up.
 TEST(WholeFiles, WhoseFolderCannotBeSearchedAnyMoreAreRefusedInWords) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "place";
@@ -153,7 +153,7 @@ TEST(CheckWritable, RefusesWhatIsNotAFileToWrite) {
 TEST(CheckWritable, RefusesAFolderWithoutPermission) {
   const TemporaryFolder folder;
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  // The superuser may write everywhere: as somebody else, where that is possible.
+  // The superuser may write everywhere, so the test changes the user if it can.
   const int before = setfsuid(65534);
   EXPECT_THROW(check_writable(folder.path() / "result.vtp"), OutputError);
   setfsuid(static_cast<uid_t>(before));

@@ -74,7 +74,7 @@ TEST(WholeFolder, RefusesFilesAndMissingPlaces) {
   EXPECT_EQ(folder.entries(), 1U);
 }
 
-// A folder that a killed run left is not locked; one that somebody writes is.
+// A killed run leaves its folder unlocked. A folder that is being written is locked.
 TEST(WholeFolder, RemovesLeftFoldersButNoneInUse) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / ".patchlight-1-0.partial");

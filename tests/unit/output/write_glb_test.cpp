@@ -38,7 +38,7 @@ std::size_t view_offset(const Glb& glb, const char* which) {
   return offset;
 }
 
-// Where a vertex stands for whoever shows the file: the node's translation and the position.
+// The displayed position of a vertex: the node's translation plus the position.
 Point shown(const Glb& glb, std::size_t vertex) {
   Point point;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -62,7 +62,7 @@ TEST(WriteGlb, IsUnlitOneSidedGltf) {
 
 TEST(WriteGlb, KeepsTheRulesOfTheFormat) { test::expect_valid(written(tiny_scene(), tiny_simulation())); }
 
-// What counts as up in the model is y afterwards; a rotation keeps lengths and the winding.
+// The model's up axis becomes y. A rotation keeps lengths and the winding.
 TEST(WriteGlb, TurnsTheUprightAxisToY) {
   Scene scene = tiny_scene();
   const Simulation simulation = tiny_simulation();
@@ -76,7 +76,7 @@ TEST(WriteGlb, TurnsTheUprightAxisToY) {
   }
 }
 
-// Far from the origin floats would be 6 cm apart; relative to the centre nothing is lost.
+// Far from the origin floats would be 6 cm apart. Relative to the center nothing is lost.
 TEST(WriteGlb, KeepsItsShapeFarFromTheOrigin) {
   Scene scene = tiny_scene();
   Simulation simulation = tiny_simulation();
@@ -107,7 +107,7 @@ TEST(WriteGlb, TrianglesKeepTheFrontOfTheirPatches) {
   for (std::size_t patch = 0; patch < 3; ++patch) EXPECT_NEAR(area[patch], simulation.mesh.area[patch], 1e-15);
 }
 
-// A viewer shows COLOR_0, which is linear, encoded as sRGB: the tone-mapped bytes must come out.
+// A viewer encodes the linear COLOR_0 as sRGB, which must give the tone-mapped bytes.
 TEST(WriteGlb, ColoursAreLinearAndComeBackAsTheBytesOfTheToneMap) {
   const Simulation simulation = tiny_simulation();
   const Glb glb = written(tiny_scene(), simulation);
@@ -127,7 +127,7 @@ TEST(WriteGlb, ColoursAreLinearAndComeBackAsTheBytesOfTheToneMap) {
   }
 }
 
-// The specification wants the exact bounds of the floats.
+// The specification requires the exact bounds of the floats.
 TEST(WriteGlb, BoundsAreExact) {
   const Glb glb = written(tiny_scene(), tiny_simulation());
   const std::size_t first = view_offset(glb, "POSITION");

@@ -38,7 +38,7 @@ TEST(WritePng, GivesThePixelsBack) {
   ASSERT_EQ(read->GetNumberOfScalarComponents(), 3);
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 7; ++x) {
-      // VTK's lowest row is the picture's last.
+      // VTK's lowest row is the image's last.
       const auto* const pixel = static_cast<const std::uint8_t*>(read->GetScalarPointer(x, 4 - y, 0));
       EXPECT_TRUE(std::equal(pixel, pixel + 3, image.pixels[static_cast<std::size_t>(7 * y + x)].begin()));
     }

@@ -50,7 +50,7 @@ const Baked& baked() {
   return one;
 }
 
-// The folder of it, and what is in it.
+// Its folder, and the contents.
 class Written {
  public:
   Written() { write_lightmap(path(), baked().scene, baked().simulation, baked().map, {.command_line = "made"}); }
@@ -82,7 +82,7 @@ TEST(WriteLightmap, FilesKeepTheRulesOfTheFormat) {
   }
 }
 
-// All light is that straight from lamps and the rest, W/m^2, texel by texel.
+// Direct light from lamps and the rest add up to all light, W/m^2, texel by texel.
 TEST(WriteLightmap, DirectAndIndirectAreAllLight) {
   const Written written;
   const std::vector<float> all = channel(written.path() / "irradiance.exr", "G");
@@ -99,7 +99,7 @@ TEST(WriteLightmap, DirectAndIndirectAreAllLight) {
   for (const float error : channel(written.path() / "indirect.exr", "error.Y")) EXPECT_GE(error, 0);
 }
 
-// The second coordinates are where the patch at that texel lies: of each triangle the middle is on a texel of its face.
+// The second coordinates lead to the texel of their patch: the middle of each triangle is on a texel of its face.
 TEST(WriteLightmap, CoordinatesLeadToTheTexelsOfTheFace) {
   const Written written;
   const Glb glb = written.glb("lightmap.glb");
@@ -125,7 +125,7 @@ TEST(WriteLightmap, CoordinatesLeadToTheTexelsOfTheFace) {
                  y = static_cast<std::size_t>(middle.y() * map.height);
       const PatchIndex patch = map.patch[y * static_cast<std::size_t>(map.width) + x];
       ASSERT_NE(patch, no_patch);
-      // From the middle of the bounds
+      // Relative to the middle of the bounds.
       const Vector from = point + Vector(bounds(baked().scene).center()) - baked().simulation.mesh.centroid[patch];
       EXPECT_NEAR(from.dot(baked().simulation.mesh.normal[patch]), 0, 1e-5);
       EXPECT_LT(from.norm(), 1);
@@ -154,7 +154,7 @@ TEST(WriteLightmap, IsReadByAssimp) {
   }
 }
 
-// How many triangles that reader finds; 0 where it refuses the file or warns of it.
+// Number of triangles that assimp finds. 0 if it rejects the file or warns about it.
 std::size_t triangles_read(const std::string& bytes) {
   Assimp::Importer importer;
   const aiScene* const scene =
@@ -165,7 +165,7 @@ std::size_t triangles_read(const std::string& bytes) {
   return triangles;
 }
 
-// It is one that finds faults: a vertex that is not there, whose triangle it drops, and half of a file.
+// The reader detects faults: it drops the triangle of a missing vertex, and rejects half of a file.
 TEST(WriteLightmap, IsNotReadWholeWhenItIsBroken) {
   const Written written;
   const std::string whole = content_of(written.path() / "lightmap.glb");

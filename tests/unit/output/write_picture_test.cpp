@@ -72,7 +72,7 @@ TEST(WritePicture, RadianceFilesHaveTheSameValuesForAnotherReader) {
     for (int x = 0; x < width; ++x) {
       const auto expected = picture.radiance.pixels.row(y * width + x);
       for (int c = 0; c < 3; ++c) {
-        // A mantissa of eight bits of the largest of the three; VTK's rows go upward.
+        // The eight-bit mantissa is relative to the largest of the three. VTK's rows go upward.
         const double found = read.GetScalarComponentAsDouble(x, height - 1 - y, 0, c);
         EXPECT_NEAR(found, expected[c], expected.maxCoeff() / 128) << x << ' ' << y << ' ' << c;
       }
@@ -145,7 +145,7 @@ std::vector<std::array<std::uint8_t, 3>> row_of_png(const std::filesystem::path&
   return row;
 }
 
-// A picture of four pixels with these radiances, all exposed alike.
+// A picture of four pixels with these radiances and one exposure.
 Picture of_radiances(const std::vector<double>& radiances) {
   Picture picture;
   picture.radiance = {4, 1, Field::Zero(4, 3), Eigen::VectorXd::Zero(4)};
@@ -159,7 +159,8 @@ TEST(WriteDifference, ShowsBothAndWhatTheirLuminancesDiffer) {
   const Picture first = of_radiances({0.1, 0.2, 0.3, 0.5}), second = of_radiances({0.1, 0.3, 0.1, 0.1});
   write_difference(folder.path() / "both.png", first, second, usual_bands(3));
   const auto row = row_of_png(folder.path() / "both.png", 0, 12);
-  // 0, 17.9, 35.8 and 71.6 cd/m^2; colours end where all but one in twenty pixels lie below, at the third of four.
+  // 0, 17.9, 35.8 and 71.6 cd/m^2. The color scale ends where all but one in twenty pixels are below, at the third of
+  // four.
   const Eigen::Vector4d differences = luminous_efficacy * Eigen::Vector4d(0, 0.1, 0.2, 0.4);
   const auto colours = false_color(differences, 0, differences[2]);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -167,14 +168,14 @@ TEST(WriteDifference, ShowsBothAndWhatTheirLuminancesDiffer) {
     EXPECT_EQ(row[4 + k], second.image.pixels[k]);
     EXPECT_EQ(row[8 + k], colours[k]) << k;
   }
-  // None where both are the same.
+  // None if both are the same.
   write_difference(folder.path() / "same.png", first, first, usual_bands(3));
   const auto same = row_of_png(folder.path() / "same.png", 0, 12);
   for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(same[8 + k], false_color(Eigen::Vector4d::Zero(), 0, 1)[0]);
 }
 
-// Light is linear in what lamps emit: one and a half times of it differs from it by half of the first picture, pixel by
-// pixel.
+// Light is linear in the emission of lamps. One and a half times the light differs from it by half of the first
+// picture, pixel by pixel.
 TEST(WriteDifference, OfSolutionsThatDifferByAFactorIsThatShareOfTheFirst) {
   const TemporaryFolder folder;
   Scene scene = test::furnished_room(0.5);
@@ -196,7 +197,7 @@ TEST(WriteDifference, OfSolutionsThatDifferByAFactorIsThatShareOfTheFirst) {
   for (int y = 0; y < 12; ++y) {
     const auto row = row_of_png(folder.path() / "both.png", y, 48);
     for (std::size_t x = 0; x < 16; ++x) {
-      // The solver stops by relative errors of 1e-6: a colour may be rounded the other way.
+      // The solver stops at relative errors of 1e-6, so a color may be rounded the other way.
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(row[32 + x][c], colours[static_cast<std::size_t>(y) * 16 + x][c], 1) << x << ' ' << y;
     }

@@ -19,7 +19,7 @@ constexpr int height = 600;
 
 using Colour = std::array<int, 3>;
 
-// The colours of the first curves.
+// The colors of the first curves.
 constexpr std::array<Colour, 5> colours = {
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}}};
 
@@ -49,7 +49,7 @@ bool alike(const Colour& a, const Colour& b) {
   return std::abs(a[0] - b[0]) < 40 && std::abs(a[1] - b[1]) < 40 && std::abs(a[2] - b[2]) < 40;
 }
 
-// The mean place of the pixels of this colour within columns and rows.
+// The mean position of the pixels of this color within columns and rows.
 struct Spot {
   double x = 0;
   double y = 0;
@@ -110,7 +110,7 @@ TEST(WritePlot, GivesTheSameBytesForTheSamePlot) {
   }
 }
 
-// Four lone points at the corners of a rectangle of data and one in its middle, where the axis has its half way.
+// Four single points at the corners of a rectangle of data and one in its middle, the middle of the axis.
 void expect_markers_at_their_places(Scale scale, double low, double middle, double high) {
   const Plot plot{"",
                   {"x", scale},
@@ -124,15 +124,15 @@ void expect_markers_at_their_places(Scale scale, double low, double middle, doub
   write_plot(folder.path() / "plot.png", plot);
   const Picture picture = read_png(folder.path() / "plot.png");
   ASSERT_FALSE(picture.pixels.empty());
-  // The legend, with names of one letter, begins behind column 828.
+  // The legend, with one-letter names, starts after column 828.
   std::array<Spot, 5> spots;
   for (std::size_t k = 0; k < 5; ++k) {
     spots[k] = spot(picture, colours[k], 0, 828);
-    // Shapes about 8 pixels across, and nothing else.
+    // Only shapes about 8 pixels across.
     EXPECT_GT(spots[k].pixels, 15);
     EXPECT_LT(spots[k].pixels, 100);
   }
-  // The shapes' centres of area are the points; which pixels of the edge count moves them by half a pixel at most.
+  // The shapes' centroids are the points. Pixels at the edge move them by half a pixel at most.
   const double pixel = 1;
   const auto& [a, b, c, d, e] = spots;
   EXPECT_NEAR(a.y, b.y, pixel);
@@ -166,7 +166,7 @@ TEST(WritePlot, GeometricConvergenceIsAStraightLineOfEqualSteps) {
 }
 
 TEST(WritePlot, LinesJoinThePoints) {
-  // A line from one lone point to another.
+  // A line from one single point to another.
   const Plot plot{"",
                   {"x", Scale::linear},
                   {"y", Scale::logarithmic},
@@ -178,8 +178,8 @@ TEST(WritePlot, LinesJoinThePoints) {
   const Spot from = spot(picture, colours[1], 0, 828), to = spot(picture, colours[2], 0, 828);
   const double slope = (to.y - from.y) / (to.x - from.x);
   EXPECT_GT(slope, 0.4);  // downward, over most of the 600 rows
-  // Markers are less than 10 pixels wide. The few pixels of the line in a column and the markers are each off by half a
-  // pixel at most.
+  // Markers are less than 10 pixels wide. The few pixels of the line in a column and the markers each have an error of
+  // half a pixel at most.
   for (int column = static_cast<int>(from.x) + 10; column < to.x - 10; ++column) {
     EXPECT_NEAR(spot(picture, colours[0], column, column + 1).y, from.y + slope * (column - from.x), 1) << column;
   }
@@ -192,7 +192,7 @@ TEST(WritePlot, TwelveCurvesHaveTwelveLooks) {
   write_plot(folder.path() / "plot.png", plot);
   const Picture picture = read_png(folder.path() / "plot.png");
   ASSERT_FALSE(picture.pixels.empty());
-  // Below the title, rows 40 and on, the legend has 22 rows per curve; its samples of lines end before column 870.
+  // Below the title, from row 40, the legend has 22 rows per curve. Its samples of lines end before column 870.
   const auto sample = [&](int curve) {
     std::vector<Colour> pixels;
     for (int y = 40 + 22 * curve; y < 62 + 22 * curve; ++y) {
@@ -229,7 +229,7 @@ TEST(WritePlot, IsSafeForOddData) {
     for (int k = 0; k < 2; ++k) {
       write_plot(folder.path() / "plot.svg", plot);
       EXPECT_TRUE(content_of(folder.path() / "plot.svg").ends_with("</svg>\n"));
-      // Second: no point, nothing to show, equal points, cut and broken names.
+      // Second: no point, nothing to show, equal points, truncated and broken names.
       plot.curves = {{"", {}}, {long_text, {{std::nan(""), 1}}}, {"\xff<", {{3, 3}, {3, 3}, {3, 3}}}};
     }
     plot.curves.resize(200);

@@ -26,7 +26,7 @@ std::string written(const std::filesystem::path& file) {
   return content_of(file);
 }
 
-// The layout that the header promises, byte for byte.
+// The layout of the header, byte for byte.
 TEST(WritePly, BytesAreWhatTheHeaderSays) {
   const TemporaryFolder folder;
   const std::string bytes = written(folder.path() / "result.ply");

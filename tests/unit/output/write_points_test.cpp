@@ -59,7 +59,7 @@ TEST(WritePoints, TakesTheNamesOfTheScenesBands) {
 }
 
 TEST(WritePoints, PhotometricLightsGiveLuxAndAnOvercastSkyDaylightFactors) {
-  // 179 lm/W, and half of what is outside.
+  // 179 lm/W, and half of the light outside.
   const TemporaryFolder folder;
   Readings readings = readings_of(Field::Constant(1, 1, 2));
   readings.photometric = true;
@@ -71,7 +71,7 @@ TEST(WritePoints, PhotometricLightsGiveLuxAndAnOvercastSkyDaylightFactors) {
             "0.5,0.5,1,0,0,1,2,0,358,0,50,0,\n");
 }
 
-// VTK keeps vertices before polygons, whatever the order of the groups: every cell must still have its own value.
+// VTK stores vertices before polygons for any order of the groups. Every cell must still have its own value.
 TEST(WritePoints, ParaViewGetsCellsOfGridsAndVerticesWithTheirOwnValues) {
   const TemporaryFolder folder;
   SensorGroup grid = rectangle_grid(Point(0, 0, 1), {Vector(2, 0, 0), Vector(0, 1, 0)}, 1);

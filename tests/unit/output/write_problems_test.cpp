@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-// A cube, on lines 1 to 6; its floor again, and a face without area.
+// A cube on lines 1 to 6, a duplicate of its floor, and a face without area.
 Scene messy_cube() {
   Scene scene = cube_room(0.5, 1);
   scene = with_quad(std::move(scene), box_faces(Point(0, 0, 0), Point(1, 1, 1), true)[0]);
@@ -35,7 +35,7 @@ TEST(WriteProblems, MarksBadFacesAndKeepsTheOthers) {
   reader->SetFileName((folder.path() / "problems.vtp").c_str());
   reader->Update();
   vtkPolyData& polygons = *reader->GetOutput();
-  // The duplicate floor and the face without area, then the six faces with nothing wrong.
+  // The duplicate floor and the face without area come first, then the six faces without problems.
   ASSERT_EQ(polygons.GetNumberOfCells(), 8);
   const auto value = [&](const char* name, vtkIdType cell) {
     return polygons.GetCellData()->GetArray(name)->GetTuple1(cell);

@@ -95,7 +95,7 @@ TEST(WriteReport, TellsWhatAccuracyHasCost) {
   EXPECT_TRUE(without.at("accuracy").empty());
 }
 
-// The row sums are 1 - lost, so the closed ones have no defect; the raw ones are off by 0, 1/4 and -1/4.
+// The row sums are 1 - lost, so the closed ones have no defect. The raw ones differ by 0, 1/4 and -1/4.
 TEST(WriteReport, WeighsRowSumsByArea) {
   const Simulation simulation = tiny_simulation();
   const nlohmann::json report = written_report(tiny_scene(), simulation);
@@ -119,7 +119,7 @@ TEST(WriteReport, SaysWhatIsNotKnownOfRowsOnDemand) {
   EXPECT_EQ(report["energy_balance"]["escaped_W"], (std::vector<double>{1, 2, 3}));
 }
 
-// Patches 1 and 2 are alike: of equals the first.
+// Patches 1 and 2 are equal, so the first is chosen.
 TEST(WriteReport, NamesTheWorstPatches) {
   const Simulation simulation = tiny_simulation();
   Scene scene = tiny_scene();

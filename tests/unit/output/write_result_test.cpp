@@ -35,7 +35,7 @@ TEST(WriteResult, RefusesOthersAndNamesThose) {
   EXPECT_EQ(folder.entries(), 0U);
 }
 
-// However many of the bytes find a place.
+// For any number of bytes that fit.
 TEST(WriteResult, FullDiskIsAnErrorAndKeepsTheOldFile) {
   for (const std::string& extension : result_extensions()) {
     const TemporaryFolder folder;

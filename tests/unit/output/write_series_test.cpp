@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr double exposure = 0.125;
 
-// Two iterates, as many as the tiny simulation's history has rows: nothing yet, then `brightness` everywhere.
+// Two iterates, the number of rows in the tiny simulation's history: first zero, then `brightness` everywhere.
 std::vector<IterateIrradiance> iterates(float brightness = 1) {
   return {IterateIrradiance::Zero(3, 3), IterateIrradiance::Constant(3, 3, brightness)};
 }
@@ -33,7 +33,7 @@ void write(const fs::path& pvd, float brightness = 1, const Observer& observer =
   write_series(pvd, tiny_scene(), tiny_simulation(), iterates(brightness), {"patchlight solve", exposure}, observer);
 }
 
-// The files that the .pvd names, with their times.
+// The files in the .pvd, with their times.
 std::vector<std::pair<std::string, fs::path>> named_by(const fs::path& pvd) {
   const std::string text = content_of(pvd);
   const std::regex entry("timestep=\"([^\"]*)\" part=\"0\" file=\"([^\"]*)\"");
@@ -94,13 +94,13 @@ TEST(WriteSeries, ReplacesAnOlderSeriesAndNothingElse) {
   EXPECT_EQ(files_in(series_folder(pvd)), 2U + newer.size());
   for (const auto& [time, file] : newer) EXPECT_TRUE(fs::exists(file)) << file;
   for (const auto& [time, file] : older) EXPECT_FALSE(fs::exists(file)) << file;
-  // The same series again: the same names, nothing is left over.
+  // The same series again: the same names, and no extra files.
   write(pvd, 2);
   EXPECT_EQ(named_by(pvd), newer);
   EXPECT_EQ(files_in(series_folder(pvd)), 2U + newer.size());
 }
 
-// At whatever file a run is stopped or the disk is full: the older series is complete and alone.
+// A run may stop or the disk may be full at any file. The older series stays complete, without other files.
 TEST(WriteSeries, KeepsTheOlderSeriesWhenItFails) {
   const TemporaryFolder folder;
   const fs::path pvd = folder.path() / "room.pvd";
@@ -149,14 +149,14 @@ TEST(CheckSeriesWritable, RefusesAFileInTheWayOfTheFolder) {
   EXPECT_THROW(check_series_writable(folder.path() / "missing" / "room.pvd"), OutputError);
 }
 
-// Its files may be made in it, but it cannot be opened to be locked: no waiting for what never comes.
+// Files may be created in it, but it cannot be opened for a lock. The program does not wait in vain.
 TEST(WriteSeries, IntoAFolderThatCannotBeOpenedIsRefused) {
   const TemporaryFolder folder;
   const fs::path pvd = folder.path() / "room.pvd";
   fs::create_directory(series_folder(pvd));
   for (const fs::path& place : {folder.path(), series_folder(pvd)}) fs::permissions(place, fs::perms::all);
   fs::permissions(series_folder(pvd), fs::perms::owner_write | fs::perms::owner_exec | fs::perms::others_write);
-  // The superuser may open everything: as somebody else, where that is possible.
+  // The superuser may open everything, so the test changes the user if it can.
   const int before = setfsuid(65534);
   int asked = 0;
   const Observer few_times = [&asked](const Progress&) { return ++asked < 10; };

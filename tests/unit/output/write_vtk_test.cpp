@@ -104,7 +104,7 @@ bool are_alike(vtkDataSetAttributes& a, vtkDataSetAttributes& b) {
   return true;
 }
 
-// A grid has the patches of the polygons, and all of their values.
+// A grid has the patches of the polygons, with all their values.
 TEST(WriteVtk, AnUnstructuredGridHoldsTheSame) {
   const TemporaryFolder folder;
   for (const char* name : {"result.vtp", "result.vtu"})
@@ -139,7 +139,7 @@ TEST(WriteVtk, LeavesOutRowSumsThatAreNotKnown) {
   EXPECT_NE(polygons->GetCellData()->GetArray("area"), nullptr);
 }
 
-// dL = rho dH / pi; squares of the three add up to that of the total.
+// dL = rho dH / pi. The squares of the three parts add up to that of the total.
 TEST(WriteVtk, ErrorBarsAreOfTheRadiance) {
   const Simulation simulation = tiny_simulation_with_bars();
   const auto polygons = written_and_read(tiny_scene(), simulation);
@@ -165,7 +165,7 @@ TEST(WriteVtk, ErrorBarsAreOfTheRadiance) {
   EXPECT_EQ(number(polygons, "relative_display_error"), 0.25);
 }
 
-// Without bars the solver's own bound, where there is one.
+// Without bars, the bound of the solver, if there is one.
 TEST(WriteVtk, TheSolversBoundStandsAlone) {
   Simulation simulation = tiny_simulation();
   const auto without = written_and_read(tiny_scene(), simulation);
@@ -279,7 +279,7 @@ TEST(WriteVtk, TakesBandsAsTheSceneStatesThem) {
   EXPECT_EQ(polygons->GetCellData()->GetArray("rgb")->GetNumberOfComponents(), 3);
 }
 
-// However many of the bytes find a place, also all but the last.
+// For any number of bytes that fit, including all but the last.
 TEST(WriteVtk, FullDiskIsAnErrorAndKeepsTheOldFile) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "result.vtp";

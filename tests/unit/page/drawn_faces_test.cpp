@@ -46,7 +46,7 @@ TEST(DrawnFaces, AreThePatchesWhereTheseAreFew) {
   EXPECT_EQ(drawn.left_out, 0U);
 }
 
-// Whole faces cover what their patches do, with the fronts on the same side.
+// Whole faces cover the same area as their patches, with the same front sides.
 TEST(DrawnFaces, CoverTheSameAreaWithFewerFaces) {
   const Scene scene = box();
   const SolvedSurface surface = surface_of(solved());
@@ -65,7 +65,7 @@ TEST(DrawnFaces, CoverTheSameAreaWithFewerFaces) {
   }
 }
 
-// The lamp has one radiance: nothing is lost when it becomes one face, so it is the first that does.
+// The lamp has one radiance, so it loses nothing as one face and becomes whole first.
 TEST(DrawnFaces, BecomeWholeWhereLeastIsLost) {
   const Scene scene = box();
   const SolvedSurface surface = surface_of(solved());

@@ -10,7 +10,7 @@
 namespace patchlight::looks_test {
 namespace {
 
-// Its floor in a room, the others far brighter outside.
+// Its floor in a room, the others much brighter outside.
 Simulation by_day() {
   Simulation simulation = tiny_simulation();
   simulation.enclosed = Eigen::Vector3d(1, 0, 0);
@@ -29,7 +29,7 @@ TEST(ExposureOf, ByDayIsThatOfTheInside) {
   EXPECT_GT(exposure_of(day), 2 * exposure_of(whole));
 }
 
-// Where no light gets in there is nothing to expose for.
+// Without light there is no exposure to choose.
 TEST(ExposureOf, IsThatOfAllWhereTheInsideIsDark) {
   Simulation day = by_day();
   day.solution.radiosity.row(0) = 0;

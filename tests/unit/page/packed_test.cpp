@@ -38,7 +38,7 @@ std::string from_base64(const std::string& text) {
   return bytes;
 }
 
-// What the page does: inflate, then take the bytes of each number out of the planes.
+// The decoding of the page: inflate, then take the bytes of each number out of the planes.
 template <class Number>
 std::vector<Number> unpacked(const std::string& text, std::size_t count) {
   const std::string packed = from_base64(text);

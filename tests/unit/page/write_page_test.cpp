@@ -44,7 +44,7 @@ TEST(WritePage, HoldsTheModelAndTheReport) {
     EXPECT_TRUE(data["model"]["values"].contains(name)) << name;
 }
 
-// 0.5 of the radiance behind a pane is 0.5^(1/2.2) of its display value.
+// A radiance of 0.5 behind a pane has 0.5^(1/2.2) of its display value.
 TEST(WritePage, TellsHowOpaqueMaterialsAreAndWhichHaveAPicture) {
   Scene scene = tiny_scene();
   scene.materials[1].transmittance = rgb(0.5, 0.5, 0.5);
@@ -73,7 +73,7 @@ TEST(WritePage, IsOneFileWithTheLicenceOfWhatItTakesIn) {
     EXPECT_EQ(count(page, mark), 0U) << mark;
 }
 
-// Whatever a name holds, the page has the elements that it has with plain names, and the name comes back as it was.
+// For any name, the page has the same elements as with plain names, and the name can be read back.
 TEST(WritePage, TakesHostileNamesForText) {
   const std::size_t elements = count(page_with(tiny_scene(), tiny_simulation()), "<");
   for (const std::string name : {"</script><script>alert(1)</script>", "<!--<script>", "\"'><img src=x onerror=y>",
@@ -100,7 +100,7 @@ TEST(WritePage, ReplacesBytesThatAreNoText) {
   EXPECT_NE(page.find("<title>\uFFFD\uFFFD.obj"), std::string::npos);
 }
 
-// JSON has no such numbers: they are null there, and stay what they are in packed arrays.
+// JSON has no such numbers: they are null there, and keep their values in packed arrays.
 TEST(WritePage, TakesNumbersThatAreNotFinite) {
   Simulation simulation = tiny_simulation_with_bars();
   simulation.error_bars->mesh(0, 0) = std::numeric_limits<double>::quiet_NaN();

@@ -10,7 +10,7 @@ namespace {
 const Eigen::Matrix3d factors{{0, 0.7, 0.3}, {0.45, 0, 0.55}, {0.4, 0.6, 0}};
 const Eigen::VectorXd row_sum = factors.rowwise().sum();
 
-// One half of them, the other one of which has what this one lacks.
+// One half of the rows. The other half has the complement.
 RayRows half_of_rows(double off) {
   RayRows rows;
   rows.first_hit.assign(4, 0);
@@ -43,8 +43,8 @@ Solution solved(const RaysWithPockets& rows, const RadiosityProblem& problem) {
   return solve(rows, problem, {.solver = Solver::gmres, .relative_error = 1e-12});
 }
 
-// sum_i A_i (F B + g d(B))_i = sum_j A_j s_j B_j by construction, and B solves B = E + R (F B + g d(B)): to the 1 % of
-// what is added that the second solution may leave.
+// sum_i A_i (F B + g d(B))_i = sum_j A_j s_j B_j by construction. B solves B = E + R (F B + g d(B)), within 1 % of the
+// added light, the tolerance of the second solution.
 TEST(ConservedFlux, IsThatOfTheSolution) {
   const RaysWithPockets rows = two_halves();
   const RadiosityProblem problem = lit(0.8);
@@ -75,7 +75,7 @@ TEST(ConservedFlux, LeavesWhatHasNotConverged) {
   EXPECT_EQ(flux.shape.abs().maxCoeff(), 0);
 }
 
-// A space that loses a tenth of its light is open, as a room with a window is: it keeps its solution.
+// A space that loses a tenth of its light is open, for example a room with a window. It keeps its solution.
 TEST(ConservedFlux, LeavesOpenSpaces) {
   const RaysWithPockets rows = two_halves();
   const Eigen::VectorXd open = 0.9 * row_sum;

@@ -15,8 +15,8 @@ Field dimmer_and_dark(double first_patch, double second) {
   return field;
 }
 
-// Grey walls, patch 0 a lamp apart and patch 1 one that stays in the rows, under a sky; the second band is .25 times as
-// bright as the first, and the third dark.
+// Gray walls, a lamp at patch 0 outside the rows and a lamp at patch 1 in the rows, under a sky. The second band is
+// 0.25 times as bright as the first, and the third is dark.
 RayLight lamps_and_sky() {
   RayLight light;
   Field exitance = Field::Zero(patches, 3);
@@ -61,7 +61,7 @@ TEST(NeededLight, GivesTheOtherBands) {
   EXPECT_TRUE((all.col(2) == 0).all()) << "the dark band";
 }
 
-// What the lamps send over mirrors is direct light, too, and its error adds to that of the sky.
+// Light of the lamps via mirrors is direct light, too, and its error adds to that of the sky.
 TEST(NeededLight, IsThatOverMirrorsAsWell) {
   RayLight light = lamps_and_sky();
   light.in_mirrors = {dimmer_and_dark(5, 0.25), dimmer_and_dark(0.3, 0.25)};
@@ -71,14 +71,14 @@ TEST(NeededLight, IsThatOverMirrorsAsWell) {
   EXPECT_DOUBLE_EQ(needed.of_others(0, 0), 0.1 * 0.1 + 0.3 * 0.3);
 }
 
-// What is emitted or arrives in another proportion is solved by itself; the dark band is not.
+// Bands with another proportion of emitted or arriving light are solved separately. The dark band is not.
 TEST(NeededLight, IsThatOfBandsWhoseLightDoesNotFollow) {
   RayLight light = lamps_and_sky();
   light.lit.problem.exitance(1, 1) *= 1 + 1e-9;
   EXPECT_EQ(needed_light(light, {}).bands.solved, (std::vector<Eigen::Index>{0, 1}));
 }
 
-// Each field that is in the result has to follow, and the errors as the light.
+// Each field in the result must be proportional, and so must the errors.
 TEST(NeededLight, IsThatOfAllBandsWhereOneFieldDoesNotFollow) {
   for (const auto& field :
        {+[](RayLight& light) { return &light.lit.direct_standard_error; },
@@ -95,7 +95,7 @@ TEST(NeededLight, IsThatOfAllBandsWhereOneFieldDoesNotFollow) {
   }
 }
 
-// Their sum is in proportion, and what is emitted is not.
+// Their sum is proportional, but the emitted light is not.
 TEST(NeededLight, IsThatOfAllBandsWhereEmittedAndDirectLightFollowTogetherAlone) {
   RayLight light = lamps_and_sky();
   light.lit.problem.exitance(2, 1) += 0.125;
@@ -103,7 +103,7 @@ TEST(NeededLight, IsThatOfAllBandsWhereEmittedAndDirectLightFollowTogetherAlone)
   expect_all_bands(light);
 }
 
-// An error in a band without light is no error times 0.
+// An error in a band without light is not an error times 0.
 TEST(NeededLight, IsThatOfAllBandsWhereADarkOneHasAnError) {
   RayLight light = lamps_and_sky();
   light.lamp_standard_error(2, 2) = 0.1;

@@ -8,8 +8,8 @@ namespace {
 
 constexpr PatchIndex patches = 1800;
 
-// All patches have bars of .3 of the light in the first band, and twice that in the second one; of the squares of half
-// of them noise is all but `left`.
+// All patches have bars of 0.3 of the light in the first band, and twice that in the second one. On half of them, all
+// but `left` of the square is noise.
 Simulation with_noise(double left) {
   Simulation simulation;
   RadiosityProblem& problem = simulation.problem;
@@ -25,15 +25,15 @@ Simulation with_noise(double left) {
   return simulation;
 }
 
-// Of the second band, the worse one.
+// Error of the second band, the worse one.
 double of_mesh(const Simulation& simulation, const Eigen::VectorXd& weight) {
   const AccuracyStep errors = errors_of(simulation, weight);
   EXPECT_DOUBLE_EQ(errors.total, errors.mesh);
   return errors.mesh / 2;
 }
 
-// sqrt(sum of the squares without noise, plus its standard error): sqrt(11 / n) of the root mean square of its parts,
-// as patches around share what is found.
+// The root of the squares without noise plus their standard error: sqrt(11 / n) of the root mean square of the parts,
+// because patches nearby share an estimate.
 TEST(RelativeErrors, AddUpWithoutTheirNoise) {
   const Eigen::VectorXd all = Eigen::VectorXd::Ones(patches);
   EXPECT_NEAR(of_mesh(with_noise(1), all), 0.3, 1e-12) << "nothing is noise";
@@ -42,7 +42,7 @@ TEST(RelativeErrors, AddUpWithoutTheirNoise) {
   EXPECT_NEAR(of_mesh(with_noise(-0.5), all), 0.3 * std::sqrt(0.25 + std::sqrt(11 * 0.5 * 1.25 / n)), 1e-12);
 }
 
-// Of a few patches the sum is hardly known: no more than the bars themselves say.
+// For a few patches the sum is uncertain, so it does not exceed the bars.
 TEST(RelativeErrors, OfFewPatchesAreTheirBars) {
   Eigen::VectorXd few = Eigen::VectorXd::Zero(patches);
   few.head(4).setOnes();

@@ -12,7 +12,7 @@
 namespace patchlight::textured_patches_test {
 namespace {
 
-// What single precision leaves of a texel of at most 1.
+// Rounding of a texel of at most 1 to single precision.
 constexpr double of_floats = 6e-8;
 
 const std::array<Spectrum, 3> of_rgb = {rgb(1, 0, 0), rgb(0, 1, 0), rgb(0, 0, 1)};
@@ -39,7 +39,7 @@ Material with_picture(Material material, Texture texture) {
   return material;
 }
 
-// A floor of 1 m x 1 m that looks up to a lamp of the same size, 1 m above.
+// A floor of 1 m x 1 m facing a lamp of the same size, 1 m above.
 Scene floor_below_lamp(Material floor) {
   Scene scene;
   scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
@@ -118,7 +118,7 @@ TEST(TexturedPatches, SendOutTheFluxOfTwoFaces) {
   EXPECT_LT(((of_one - of_two) / of_two).abs().maxCoeff(), 1e-6);
 }
 
-// The mean over a face is that over the picture's part on it, however the face is cut.
+// The mean over a face is the mean of its part of the texture, for any patches.
 TEST(TexturedPatches, HaveTheMeanOfThePictureOverTheirFace) {
   const Scene scene = floor_below_lamp(with_picture(matt("floor", rgb(0.5, 0.5, 0.5)), checked()));
   Spectrum expected = rgb(0, 0, 0);
@@ -134,7 +134,7 @@ TEST(TexturedPatches, HaveTheMeanOfThePictureOverTheirFace) {
   }
 }
 
-// Mirrored and turned by a quarter: the same texel lies at another corner.
+// Mirrored and rotated by 90 degrees: the same texel lies at another corner.
 TEST(TexturedPatches, FollowMirroredAndTurnedPictures) {
   const Texture corners{2, 2, {{.1F, 0, 0}, {.2F, 0, 0}, {.3F, 0, 0}, {.4F, 0, 0}}};  // at (u, v): 00, 10, 01, 11
   struct Case {
@@ -199,7 +199,7 @@ TEST(TexturedPatches, SayHowManyMaterialsHavePicturesAndHowFarTexelsDiffer) {
             "1 of 2 materials has a texture; texels differ from the mean of their texture by up to 100 %, rms");
 }
 
-// Two triangles of one picture become a wall where it goes on from one to the other, and stay apart where it does not.
+// Two triangles of one texture become a wall if the texture continues across their edge. Otherwise they stay separate.
 TEST(TexturedPatches, LieOnFacesThatAreJoinedWhereThePictureGoesOn) {
   Scene scene = floor_below_lamp(with_picture(matt("floor", rgb(0.5, 0.5, 0.5)), checked()));
   scene.polygons[0].corners = {0, 1, 2};

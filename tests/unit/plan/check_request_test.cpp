@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-// What check() says of a request with these parts; nothing when it accepts them.
+// The message of check() for a request with these parts. Empty if it accepts them.
 std::string refusal(const std::vector<RequestPart>& parts) {
   Request request;
   Given given;
@@ -44,7 +44,7 @@ TEST(CheckRequest, AcceptsEveryPartAlone) {
   for (const RequestPart& part : request_parts()) EXPECT_EQ(refusal({part}), "") << part.name;
 }
 
-// All pairs: those that contradict are refused, by the names of both, and no other is.
+// All pairs: check() rejects contradicting pairs, with the names of both parts, and no others.
 TEST(CheckRequest, RefusesJustThePairsThatContradict) {
   const std::vector<RequestPart> parts = request_parts();
   for (const RequestPart& one : parts) {
@@ -91,7 +91,7 @@ TEST(CheckRequest, RefusesAnInterestWithoutAnErrorThatItCouldBeOf) {
   }
 }
 
-// The same parts as check() refuses beside error bars.
+// Error bars exclude the same parts as check() rejects.
 TEST(CheckRequest, KnowsWhatLeavesNoErrorBars) {
   EXPECT_FALSE(part_without_error_bars({}));
   for (const RequestPart& part : request_parts()) {
@@ -131,7 +131,7 @@ TEST(CheckRequest, KnowsTheNamesOfTheScene) {
   EXPECT_THROW(check(request, cube_room(0.5, 1)), InputError);
 }
 
-// Whoever calls the library is told before any work.
+// Callers of the library get the error before any work.
 TEST(CheckRequest, IsAskedByWhatTakesARequest) {
   Request request;
   request.mesh.max_edge = 1;
@@ -141,7 +141,7 @@ TEST(CheckRequest, IsAskedByWhatTakesARequest) {
   EXPECT_THROW(find_form_factors(scene, request), InputError);
 }
 
-// Form factors that are given cannot be asked for the errors of their entries.
+// Given form factors exclude a request for the errors of their entries.
 TEST(CheckRequest, SeesThatFormFactorsAreGiven) {
   Request request;
   request.accuracy.error_bars = true;

@@ -6,7 +6,7 @@
 namespace patchlight::decide_test {
 namespace {
 
-// A room as most are: something stands in it, it reflects, and so do its colours. One lamp.
+// A typical room: it contains furniture, it reflects, and so do its colors. One lamp.
 EffectFacts usual_facts() {
   EffectFacts facts;
   facts.polygons = 12;

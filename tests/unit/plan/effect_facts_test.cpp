@@ -81,7 +81,7 @@ TEST(SurveyEffects, DaylightNeedsAnOpeningOrASideThatSeesOut) {
   EXPECT_EQ(facts_of(scene, Sides::front).openings, 0U) << "counted with the first face of its pane";
 }
 
-// By Fresnel's equations what has the index of air reflects nothing, at no angle.
+// A pane with the index of air reflects nothing at any angle, by Fresnel's equations.
 TEST(SurveyEffects, NothingReflectsWithTheIndexOfAir) {
   Scene scene = coloured_room(rgb(0.5, 0.5, 0.5), rgb(10, 8, 5));
   Material net = scene.materials[0];

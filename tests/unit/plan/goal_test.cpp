@@ -75,9 +75,9 @@ TEST(Goal, CutsTheGroundBeforeTheWindow) {
   EXPECT_GT(largest, 10 * size_of_nearest);
 }
 
-// Ground beyond 40 m changes little of the light in the room. Seen from the middle of the pane, 1.7 m above the ground,
-// it fills sin(atan(1.7 / 40)) / 2 = 2.1 % of the cosine-weighted hemisphere. So the readings agree to 3 % beside their
-// errors.
+// Ground beyond 40 m changes little of the light in the room. From the middle of the pane, 1.7 m above the ground, it
+// covers sin(atan(1.7 / 40)) / 2 = 2.1 % of the cosine-weighted hemisphere. So the readings agree to 3 % in addition to
+// their errors.
 TEST(Goal, KeepsTheRoomAsItIsInAWideTerrain) {
   Request request;
   request.mesh.patches = 1500;

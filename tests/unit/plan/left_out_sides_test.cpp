@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-// Two closed rooms side by side, each with walls and a lamp's material of its own.
+// Two closed rooms side by side, each with its own material for the walls and the lamp.
 Scene two_cells(double first_exitance, double second_exitance) {
   Scene scene = empty_scene({grey(0.5, first_exitance), grey(0.5, second_exitance)});
   scene.materials[0].name = "first";
@@ -32,7 +32,7 @@ TEST(LeftOutSides, OfARoomThatWasDarkAreNoted) {
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_NE(notes[0].find("'second'"), std::string::npos) << notes[0];
   EXPECT_EQ(notes[0].find("'first'"), std::string::npos) << notes[0];
-  // The inner sides of the second room: beside it, the first one is dark inside and outside.
+  // The inner sides of the second room. The first room is dark inside and outside with these lamps.
   EXPECT_NE(notes[1].find("lamps 6 sides of faces"), std::string::npos) << notes[1];
 }
 

@@ -92,7 +92,8 @@ TEST(MakePlan, RefusesToSkipAllLight) {
   EXPECT_THROW(make_plan(scene, request), InputError);
 }
 
-// Of two scenes with as many patches the one with more faces has larger errors of their size, which rays do not exceed.
+// If two scenes have the same number of patches, the one with more faces has larger errors of the patch size. The
+// errors of rays do not exceed these.
 TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
   const auto chosen = [](std::size_t patches, std::size_t sides, const Request& request = {}) {
     return choose_storage(request, {}, {.patches = patches, .sides = sides}).request.assembly;
@@ -110,7 +111,7 @@ TEST(ChooseStorage, TakesRaysWhereSidesHaveFewPatches) {
   EXPECT_EQ(chosen(2000, 63, refined).storage, Storage::tiles) << "faces get more patches where it matters";
 }
 
-// What does not fit by pairs is sent to rows of rays only where these do.
+// A run that does not fit by pairs gets the advice to use rays only if these fit.
 TEST(RequireMemory, AdvisesRaysOnlyWhereTheyFit) {
   const Scene scene = furnished_room(0.5);
   Request request;
@@ -130,7 +131,7 @@ TEST(RequireMemory, AdvisesRaysOnlyWhereTheyFit) {
   EXPECT_NE(said(60e6), "nothing");
 }
 
-// Many patches are not solved by pairs, unless something that is asked for takes these; what is asked for stays.
+// The pair method does not solve many patches unless the request requires it. Explicit requests stay.
 TEST(MakePlan, TakesRaysForManyPatches) {
   const Scene scene = furnished_room(0.5);
   Request request;
@@ -167,7 +168,7 @@ TEST(MakePlan, TakesRaysForManyPatches) {
   EXPECT_EQ(make_plan(furnished_room(0), request).assembly.storage, Storage::on_demand) << "nothing reflects";
 }
 
-// No matrix for the light of few lamps, unless its rows are to be closed or its errors kept.
+// The light of few lamps needs no matrix, unless its rows are closed or its errors are kept.
 TEST(MakePlan, HasErrorBarsOfPairsWhereTheyAreCheap) {
   const Scene scene = cube_room(0.5, 1);
   const auto has_bars = [&](std::size_t patches, const auto& change) {
@@ -182,7 +183,7 @@ TEST(MakePlan, HasErrorBarsOfPairsWhereTheyAreCheap) {
   EXPECT_TRUE(has_bars(4000, [](Request& r) { r.assembly.storage = Storage::tiles; }));
   EXPECT_FALSE(has_bars(8000, nothing));
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.accuracy.cheap_error_bars = false; }));
-  // What leaves no error bars is not refused for these.
+  // Requests that exclude error bars are accepted, without bars.
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.close = false; }));
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.effects.skip = {Effect::interreflection}; }));
   EXPECT_FALSE(has_bars(4000, [](Request& r) { r.assembly.storage = Storage::on_demand; }));
@@ -207,7 +208,7 @@ TEST(MakePlan, TakesTheRowsOfLampsAloneWhereNothingReflects) {
   EXPECT_TRUE(make_plan(furnished_room(0), request).assembly.close);
 }
 
-// 2,000 small faces in a room of six large ones: these have to be cut as well.
+// 2,000 small faces in a room of six large ones, which must be cut as well.
 TEST(MakePlan, CutsLargeFacesOfModelsWithManySmallOnes) {
   Scene scene = cube_room(0.5, 1);
   for (int k = 0; k < 2000; ++k) {
@@ -247,8 +248,8 @@ Scene room_with_boxes(int boxes) {
   return scene;
 }
 
-// Where the faces alone are as many patches as are asked for the large ones are cut all the same, with and without
-// error bars: those beyond the faces are theirs.
+// The faces alone reach the number of patches for the large ones. Large faces are cut anyway, with and without error
+// bars: the remaining patches are theirs.
 TEST(MakePlan, CutsLargeFacesBesideFacesThatAreEnoughPatches) {
   const Scene scene = room_with_boxes(240);
   for (const bool error_bars : {false, true}) {
@@ -265,8 +266,8 @@ TEST(MakePlan, CutsLargeFacesBesideFacesThatAreEnoughPatches) {
   }
 }
 
-// With error bars large patches are cut in four and small faces stay whole: neither all nor a quarter of the patches
-// are parents.
+// With error bars large patches are cut in four and small faces stay whole. So the number of parents is neither all nor
+// a quarter of the patches.
 TEST(MakePlan, MeetsTheNumberOfPatchesOfNestedMeshesWithManySmallFaces) {
   const Scene scene = room_with_boxes(60);
   for (const std::size_t patches : {500U, 1500U, 4000U}) {
@@ -286,7 +287,7 @@ TEST(MakePlan, TakesTheEdgeThatIsAskedFor) {
   EXPECT_EQ(make_plan(furnished_room(0.5), request).max_edge, 0.123);
 }
 
-// What is not open is taken as it is, and all parts are.
+// Specified values are kept, and all parts are filled.
 TEST(MakePlan, TakesThePartsOfTheRequestOver) {
   Request request;
   request.assembly = {.samples = 16, .seed = 7, .lost_share_rays = 64};
@@ -305,7 +306,7 @@ TEST(MakePlan, TakesThePartsOfTheRequestOver) {
   EXPECT_EQ(plan.resources.memory, 1e9);
 }
 
-// Nothing is left open that a step of the run would have to choose.
+// The plan leaves no choice to a step of the run.
 TEST(MakePlan, FillsWhatIsLeftOpen) {
   EXPECT_EQ(make_plan(furnished_room(0.5), {}).solver.relative_error, default_tolerance);
   Request request;
@@ -315,13 +316,13 @@ TEST(MakePlan, FillsWhatIsLeftOpen) {
   EXPECT_TRUE(plan.assembly.keep_errors);
 }
 
-// Form factors that are given are a matrix, even where the rows of lamps would do.
+// Given form factors are a matrix, even if the rows of lamps suffice.
 TEST(MakePlan, KeepsFormFactorsThatAreGiven) {
   EXPECT_EQ(make_plan(furnished_room(0), {}, {.form_factors = true}).assembly.storage, Storage::tiles);
 }
 
-// On a face whose corners lie farther from one plane than touching faces may be apart no lines are looked for, and the
-// plan says so; the others keep theirs.
+// On a bent face, whose corners deviate from one plane by more than the contact tolerance, no lines are searched. The
+// plan has a note. The other faces keep their lines.
 TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
   Scene scene = furnished_room(0.5);
   scene = with_box(std::move(scene), Point(3, 0.5, 0), Point(3.5, 1, 0.5), false);
@@ -340,7 +341,7 @@ TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
   const Plan bent = make_plan(scene, Request());
   EXPECT_TRUE(told(bent));
   EXPECT_TRUE(bent.contacts.on[floor].empty());
-  // Nor on walls, whose corners are rounded as those of the floor are.
+  // There are no lines on walls either, whose corners are rounded like those of the floor.
   const auto& corners = scene.polygons[floor].corners;
   for (std::size_t p = 0; p < scene.polygons.size(); ++p) {
     const auto& others = scene.polygons[p].corners;
@@ -351,7 +352,7 @@ TEST(Plan, LooksForNoLinesOfContactOnBentFaces) {
   EXPECT_GT(number_of(bent.contacts), 0U);
 }
 
-// 80 x 80 small boxes on a floor have 51,200 lines there, each twice, and a wall on it two long ones.
+// 80 x 80 small boxes on a floor have 51,200 lines there, each twice. A wall on it has two long ones.
 Scene floor_with_many_boxes() {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 1)}),
                           {Point(0, 0, 0), Point(40, 0, 0), Point(40, 40, 0), Point(0, 40, 0)});
@@ -376,7 +377,7 @@ TEST(Plan, FollowsTheLongestOfTooManyLines) {
   EXPECT_LE(number_of(plan.contacts), 10'000U);
 }
 
-// As form factors in a folder tell: the same lines whichever edge or number of patches is asked for then.
+// A form factor folder stores this number: any edge or number of patches then gives the same lines.
 TEST(Plan, FollowsAsManyLinesAsItIsTold) {
   const Scene scene = floor_with_many_boxes();
   Request request;
@@ -389,7 +390,7 @@ TEST(Plan, FollowsAsManyLinesAsItIsTold) {
   }
 }
 
-// Patches that no memory holds are not counted on the way.
+// Patches beyond any memory are not counted on the way.
 TEST(Plan, DoesNotMeshWhatItRefuses) {
   Request request;
   request.mesh.max_edge = 1e-6;

@@ -20,8 +20,7 @@ namespace {
 
 using namespace test;
 
-// A floor of 4 x 4 m at z = 0, its front upward: polygon 0. The sun is so strong that a patch that faces it has 1
-// W/m^2.
+// A floor of 4 x 4 m at z = 0, its front upward: polygon 0. The sun gives 1 W/m^2 to a patch that faces it.
 Scene sunny_floor(const Vector& sun) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene.sun = Sun{sun.normalized(), Spectrum::Constant(1, 1)};
@@ -40,12 +39,12 @@ double length_of(const std::vector<ContactLine>& lines) {
 }
 
 struct LitFloor {
-  double area = 0;    // m^2, of the floor's patches, each as far as it is lit
-  double partly = 0;  // m^2, of patches that are neither lit nor dark
+  double area = 0;    // m^2 of the floor's patches, weighted by their lit fraction
+  double partly = 0;  // m^2 of patches that are neither lit nor dark
   double patches = 0;
 };
 
-// The polygon 0 of a scene meshed as planned, by the irradiance of a light that gives every lit patch some.
+// Polygon 0 of a scene in the planned mesh, by the irradiance of a light that reaches every lit patch.
 LitFloor lit_floor(const Scene& scene, Request request) {
   request.mesh.sides = Sides::front;
   const Plan plan = make_plan(scene, request);
@@ -78,8 +77,8 @@ std::vector<ContactLine> lines_on_floor(const Scene& scene) {
 
 }  // namespace
 
-// A block of 1 m below a sun at 45 degrees, along its faces: an edge of the top throws the end of the shadow, and each
-// side is thrown by an edge of the top and by two upright ones, one of them along the foot of the block.
+// A block of 1 m below a sun at 45 degrees, parallel to its faces. An edge of the top casts the end of the shadow. An
+// edge of the top and two vertical edges cast each side, one of them along the foot of the block.
 TEST(ShadowLines, RunAroundTheShadowOfABlock) {
   const Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(2, 2, 1));
   const std::vector<ContactLine> lines = lines_on_floor(scene);
@@ -91,16 +90,16 @@ TEST(ShadowLines, RunAroundTheShadowOfABlock) {
   }
 }
 
-// The upright edges of a block that does not stand along the sun's rays throw the sides of its shadow.
+// The vertical edges of a block that is oblique to the sun cast the sides of its shadow.
 TEST(ShadowLines, AreThrownBySilhouettesAlone) {
   const Scene scene = with_block(sunny_floor({-1, -1, 1}), Point(1, 1, 0), Point(2, 2, 1));
   EXPECT_NEAR(length_of(lines_on_floor(scene)), 2 * std::numbers::sqrt2 + 2, 1e-4);
 }
 
-// Without lines a twentieth and more of the floor has patches in half shadow.
+// Without lines, patches in half shadow cover a twentieth of the floor or more.
 TEST(ShadowLines, LeaveNoPatchInHalfShadow) {
   const Scene scene = with_block(sunny_floor({-1, -0.6, 1.1}), Point(1, 1, 0), Point(2, 2, 1));
-  const double shadow = 1.0 + 1 / 1.1 * (1 + 0.6);  // the block's foot, and what its top sweeps
+  const double shadow = 1.0 + 1 / 1.1 * (1 + 0.6);  // the block's foot, and the shadow of its top
   const LitFloor with = lit_floor(scene, patches(400));
   EXPECT_EQ(with.partly, 0);
   EXPECT_NEAR(with.area, 16 - shadow, 1e-4 * 16);
@@ -127,7 +126,7 @@ TEST(ShadowLines, AreThoseOfALuminaireWithoutExtentToo) {
   EXPECT_EQ(lit_floor(scene, patches(400)).partly, 0);
 }
 
-// The shadow of a post at the inner corner of an L goes on where an edge of the floor ends.
+// The shadow of a post at the inner corner of an L continues where an edge of the floor ends.
 TEST(ShadowLines, GoOnBeyondAnEdgeOfTheFloor) {
   Scene scene = with_polygon(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 2, 0), Point(2, 2, 0),
                                                         Point(2, 4, 0), Point(0, 4, 0)});
@@ -140,7 +139,7 @@ TEST(ShadowLines, GoOnBeyondAnEdgeOfTheFloor) {
   }));
 }
 
-// An edge that rises past the light throws its shadow without end there.
+// An edge that rises above the light casts an infinite shadow there.
 TEST(ShadowLines, EndAtTheHeightOfTheLight) {
   Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(1.1, 1.1, 3));
   const std::size_t count = scene.polygons.size();
@@ -153,21 +152,21 @@ TEST(ShadowLines, EndAtTheHeightOfTheLight) {
   }
 }
 
-// A luminaire flush with the ceiling is not hidden by it.
+// The ceiling does not hide a luminaire flush with it.
 TEST(ShadowLines, AreThrownByALightInThePlaneOfTheCeiling) {
   Scene scene = with_block(sunny_floor({-1, 0, 1}), Point(1, 1, 0), Point(2, 2, 0.5));
   scene = with_quad(std::move(scene), {Point(0, 0, 2.3), Point(0, 4, 2.3), Point(4, 4, 2.3), Point(4, 0, 2.3)});
   const std::size_t count = scene.polygons.size();
   const KeptSides front{std::vector<std::uint8_t>(count, 1), std::vector<std::uint8_t>(count, 0), {}, {}};
   const auto lines = find_shadow_lines(scene, front, find_coverings(scene, front), {{Point(0.3, 0.4, 2.3), 1}})[0];
-  // Two edges of the top, of 1 m each, are as much longer as they are nearer to the light.
+  // The shadows of two edges of the top, of 1 m each, are longer by the ratio of distances to the light.
   double longest = 0;
   for (const ContactLine& line : lines) longest = std::max(longest, (line.to - line.from).norm());
   EXPECT_NEAR(longest, 2.3 / 1.8, 1e-4);
 }
 
-// Of what is left out, of a sun that has set, and of many luminaires there are no lines; nor in a mesh to which form
-// factors belong, which know of no light.
+// Disabled effects, a set sun and many luminaires give no lines. Neither does a mesh of given form factors, which do
+// not depend on light.
 TEST(ShadowLines, AreFollowedWhereTheyTellOfMuchLight) {
   Scene scene = with_block(sunny_floor({-1, -0.6, 1.1}), Point(1, 1, 0.5), Point(2, 2, 1));
   scene.sky = Sky{.horizontal_irradiance = Spectrum::Constant(1, 1)};
@@ -189,7 +188,7 @@ TEST(ShadowLines, AreFollowedWhereTheyTellOfMuchLight) {
   EXPECT_EQ(number_of(make_plan(scene, {}).contacts), 0U);
 }
 
-// Two grilles of 80 flat bars that cross over a floor throw shadows of thousands of corners.
+// Two crossing grilles of 80 flat bars over a floor cast shadows of thousands of corners.
 TEST(ShadowLines, AreLeftOutWhereTheyAreTooMany) {
   Scene scene = sunny_floor({-0.1, -0.2, 1});
   for (int k = 0; k < 80; ++k) {

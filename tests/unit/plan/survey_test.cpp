@@ -59,7 +59,7 @@ TEST(Survey, GuessesTheUnitOfModelsOfImplausibleSize) {
     EXPECT_EQ(report.unit_guess ? report.unit_guess->unit : "", unit);
     EXPECT_EQ(has(report, DiagnosticCode::implausible_size), !unit.empty());
   }
-  // Read as millimetres, a model in metres is too small.
+  // Read in millimeters, a model in meters is too small.
   Scene small = moved(furnished_room(0.5), Eigen::Affine3d(Eigen::UniformScaling<double>(1e-3)));
   small.metres_per_unit = 1e-3;
   EXPECT_EQ(survey_of(small).unit_guess.value().unit, "m");

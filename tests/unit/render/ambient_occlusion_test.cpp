@@ -8,7 +8,7 @@
 namespace patchlight::ambient_occlusion_test {
 namespace {
 
-// A floor patch with its low edge at x and so wide, beside a wall at x = 0 that is as good as endless.
+// A floor patch of this width with its low edge at x, beside a practically infinite wall at x = 0.
 Scene corner(double x, double width) {
   return quad_scene({{Point(x, 0, 0), Point(x + width, 0, 0), Point(x + width, width, 0), Point(x, width, 0)},
                      {Point(0, -20, 0), Point(0, 20, 0), Point(0, 20, 20), Point(0, -20, 20)}});
@@ -32,7 +32,7 @@ TEST(AmbientOcclusion, IsNothingInASmallClosedBoxAndAllBeforeTheSky) {
   const Scene box = quad_scene(inner_sides({0, 0, 0}, {1, 1, 1}));
   const Occluder occluder(box, Occluder::Blockers::all);
   EXPECT_EQ(ambient_occlusion(front_patches(box), occluder, 2).maxCoeff(), 0);
-  // Within less than any distance from the middle of a patch nearly all is free.
+  // Within a very small distance of the middle of a patch nearly all directions are free.
   EXPECT_GT(ambient_occlusion(front_patches(box), occluder, 1e-3).minCoeff(), 0.99);
   const Scene floor = quad_scene({{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)}});
   EXPECT_EQ(ambient_occlusion(front_patches(floor), Occluder(floor, Occluder::Blockers::all), 5)[0], 1);

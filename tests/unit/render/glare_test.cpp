@@ -8,7 +8,7 @@
 namespace patchlight::glare_test {
 namespace {
 
-// Towards sigma degrees from the line of sight along y, in a plane tau degrees from the upright.
+// A direction at sigma degrees from the line of sight along y, in a plane tau degrees from the vertical.
 Vector toward(double sigma, double tau) {
   const double s = sigma * std::numbers::pi / 180, t = tau * std::numbers::pi / 180;
   return {std::sin(s) * std::sin(t), std::cos(s), std::sin(s) * std::cos(t)};
@@ -21,13 +21,13 @@ TEST(PositionIndex, IsOneAheadAndTheSameAtBothSides) {
 }
 
 TEST(PositionIndex, HasTheValuesOfItsFormula) {
-  // By hand, straight above (tau = 0): exp((35.2 - 1.22) 1e-3 sigma + 21e-5 sigma^2); at 30 degrees exp(1.0194 +
+  // Straight above (tau = 0), by hand: exp((35.2 - 1.22) 1e-3 sigma + 21e-5 sigma^2). At 30 degrees: exp(1.0194 +
   // 0.189).
   EXPECT_NEAR(position_index(toward(30, 0), Vector::UnitY(), Vector::UnitZ()), std::exp(1.0194 + 0.189), 1e-9);
   // Beside the line of sight (tau = 90): (35.2 - 28.7001 - 1.22 e^-20) 1e-3 = 6.4999e-3, and (21 + 24.0003 - 24.0003)
-  // 1e-5 = 21e-5; at 20 degrees exp(0.129998 + 0.084).
+  // 1e-5 = 21e-5. At 20 degrees: exp(0.129998 + 0.084).
   EXPECT_NEAR(position_index(toward(20, 90), Vector::UnitY(), Vector::UnitZ()), std::exp(0.129998 + 0.084), 1e-5);
-  // The tables of CIE 117 by H / R and T / R: at H / R = 1, T / R = 0 the index is 7.0.. to two figures of Guth's data.
+  // The tables of CIE 117 by H / R and T / R: at H / R = 1, T / R = 0 the index is 7.0 to two digits of Guth's data.
   EXPECT_NEAR(position_index(toward(45, 0), Vector::UnitY(), Vector::UnitZ()), 7.0, 0.25);
 }
 
@@ -45,7 +45,7 @@ TEST(ProjectedOpening, IsTheShadowOfItsShape) {
   web.shape = OpeningShape::upright_cylinder;
   web.opening = Vector(1, 1, 0.5);
   EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4 * 2 / 3 + 0.5 * std::sqrt(5.0) / 3, 1e-12);
-  // A tube along x, of length 2 and diameter 0.5: its ends, and a rectangle from beside.
+  // A tube along x, of length 2 and diameter 0.5: its ends, and a rectangle from the side.
   web.shape = OpeningShape::cylinder_by_length;
   web.opening = Vector(0.5, 2, 0.5);
   EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4 * 0.25 / 3 + 2 * 0.5 * std::sqrt(8.0) / 3,
@@ -53,7 +53,7 @@ TEST(ProjectedOpening, IsTheShadowOfItsShape) {
   web.shape = OpeningShape::cylinder_by_width;
   web.opening = Vector(2, 0.5, 0.5);
   EXPECT_NEAR(projected_opening(web, frame, Vector::UnitX()), 1, 1e-12);
-  // A sphere is a disc from everywhere.
+  // A sphere is a disc from all directions.
   web.shape = OpeningShape::ellipsoid;
   web.opening = Vector(1, 1, 1);
   EXPECT_NEAR(projected_opening(web, frame, slanted), std::numbers::pi / 4, 1e-12);

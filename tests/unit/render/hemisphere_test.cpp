@@ -9,7 +9,7 @@
 namespace patchlight::hemisphere_test {
 namespace {
 
-// What a point at the height 0 under a plane at the height 1 gets, whose radiosity is a linear function of x and y.
+// A point at height 0 under a plane at height 1, whose radiosity is a linear function of x and y.
 struct UnderAPlane {
   HemisphereIrradiance found;
   double mean_distance = 0;
@@ -30,7 +30,7 @@ UnderAPlane gathered_at(const Point& point) {
 }
 
 TEST(Hemisphere, FindsTheIrradianceOfALinearRadiosity) {
-  // By symmetry that of the place straight above.
+  // The radiosity straight above, by symmetry.
   const Point point(0.2, -0.4, 0);
   const UnderAPlane there = gathered_at(point);
   EXPECT_NEAR(there.found.irradiance[0], radiosity_at(point), 4 * std::sqrt(there.found.variance[0]) + 1e-3);
@@ -69,7 +69,7 @@ TEST(IrradianceCache, InterpolatesALinearIrradianceExactly) {
   const auto found = cache.at(between, Vector::UnitZ());
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->irradiance[0], radiosity_at(between), 1e-12);
-  // Two records that agree are off by less than each.
+  // Two records that agree have a smaller error than each.
   EXPECT_LT(found->deviation, 0.1);
   EXPECT_GT(found->deviation, 0.05);
 }
@@ -78,7 +78,7 @@ TEST(IrradianceCache, GradesRadii) {
   IrradianceCache cache(Eigen::VectorXd::Ones(1));
   cache.add_graded({record_of_linear(Point(0, 0, 0), 1)});
   cache.add_graded({record_of_linear(Point(0.5, 0, 0), 0.1)});
-  // The first reaches as far as .1 + .4 * .5 now.
+  // The radius of the first is now 0.1 + 0.4 * 0.5.
   EXPECT_GT(cache.weight_at(Point(0, 0.29, 0), Vector::UnitZ()), 0);
   EXPECT_EQ(cache.weight_at(Point(0, 0.31, 0), Vector::UnitZ()), 0);
 }

@@ -38,7 +38,7 @@ TEST(Lens, HasTheFieldOfViewAtItsUpperEdge) {
 }
 
 TEST(Lens, OfEqualAreaHasTheProjectedSolidAngleOfThePixels) {
-  // The cosine-weighted integral of 1 over the hemisphere is pi: each pixel counts (2 / height)^2.
+  // The cosine-weighted integral of 1 over the hemisphere is pi: each pixel has the weight (2 / height)^2.
   const Lens lens(camera_of(Projection::hemispherical, 180), Vector::UnitZ(), 400, 400);
   int inside = 0;
   double elevation = 0;

@@ -19,14 +19,14 @@ using namespace test;
 
 constexpr double exitance = 10;
 
-// A floor under a lamp that hangs upright before a point of it, half of it below the floor's plane: x = 0.2.
+// A floor under a vertical lamp in front of a point of it, half of it below the floor's plane: x = 0.2.
 Scene floor_and_lamp() {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0, exitance)}),
                           {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
   return with_quad(std::move(scene), {Point(0.2, -1, -1), Point(0.2, -1, 1), Point(0.2, 1, 1), Point(0.2, 1, -1)}, 1);
 }
 
-// The mean of many samples at the origin, which looks up, and its standard error by sequences of their own.
+// The mean of many samples at the origin, facing up, and its standard error by independent sequences.
 struct Mean {
   double irradiance = 0;
   double standard_error = 0;
@@ -57,8 +57,8 @@ Mean mean_at_origin(const Scene& scene, std::uint32_t rays) {
   return mean;
 }
 
-// Of a lamp that the plane of the floor cuts each sample has the whole of what is above it, though rays to the rest are
-// stopped under the floor.
+// The plane of the floor cuts a lamp. Each sample includes the whole part above it, though the floor stops rays to the
+// rest.
 TEST(LightSamples, OfALampThatTheHorizonCutsAreExact) {
   const Scene scene =
       with_quad(floor_and_lamp(), {Point(-2, -2, -0.01), Point(2, -2, -0.01), Point(2, 2, -0.01), Point(-2, 2, -0.01)});
@@ -71,7 +71,7 @@ TEST(LightSamples, OfALampThatTheHorizonCutsAreExact) {
   }
 }
 
-// A wall at half the way hides what is right of it: rays that are spread evenly tell its share without bias.
+// A wall halfway hides the right part. Evenly spread rays estimate its fraction without bias.
 TEST(LightSamples, OfALampThatIsHiddenInPartHaveItsMean) {
   Scene scene =
       with_quad(floor_and_lamp(), {Point(0.1, 0.05, -1), Point(0.1, 0.05, 2), Point(0.1, 2, 2), Point(0.1, 2, -1)});

@@ -40,7 +40,7 @@ TEST(LightmapCharts, WallsOfTrianglesAreOneChartEach) {
     double area = 0;
     for (const PatchIndex patch : chart.patches) area += mesh.area[patch];
     EXPECT_NEAR(chart.extent[0] * chart.extent[1], area, 1e-9);
-    // Seen from the front, right and down are as on paper.
+    // From the front, right and down are the same as on paper.
     EXPECT_NEAR(chart.right.cross(chart.down).dot(mesh.normal[chart.patches.front()]), -1, 1e-12);
   }
   EXPECT_EQ(patches, mesh.size());
@@ -50,7 +50,7 @@ TEST(LightmapCharts, MaterialsAndSidesAreApart) {
   Scene scene = empty_scene({grey(0.5, 1), grey(0.4)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)}, 0);
   scene = with_quad(std::move(scene), {Point(1, 0, 0), Point(2, 0, 0), Point(2, 1, 0), Point(1, 1, 0)}, 1);
-  // Beside it, but turned over.
+  // Beside it, but upside down.
   scene = with_quad(std::move(scene), {Point(2, 0, 0), Point(2, 1, 0), Point(3, 1, 0), Point(3, 0, 0)}, 1);
   Request request;
   request.mesh.sides = Sides::front;
@@ -58,7 +58,7 @@ TEST(LightmapCharts, MaterialsAndSidesAreApart) {
   EXPECT_EQ(charts_of(scene, simulate(scene, request).mesh).size(), 3U);
 }
 
-// No texel of a chart or of its padding is another's, and all lie in the map.
+// Texels of charts and their padding belong to one chart, and all lie in the map.
 TEST(LightmapCharts, LieApartInTheMap) {
   const Scene scene = room_of_triangles();
   const auto charts = charts_of(scene, mesh_of(scene));
@@ -98,7 +98,7 @@ TEST(LightmapCharts, MoreChartsThanAMapHoldsAreRefused) {
   EXPECT_THROW(packed_charts(charts, std::nullopt), InputError);
 }
 
-// What is linear on a chart is interpolated at its edge as it is, and one texel farther.
+// A linear function on a chart is interpolated exactly at its edge, and up to one texel beyond.
 TEST(LightmapPadding, GoesOnLinearly) {
   Lightmap map;
   map.width = map.height = 12;
@@ -120,7 +120,7 @@ TEST(LightmapPadding, GoesOnLinearly) {
   EXPECT_EQ(padded.patch[12 * 2 + 3], no_patch);
 }
 
-// Between two charts so near that one's padding ends where that of the other begins, nothing is mixed.
+// Two charts are so close that the padding of one ends at that of the other. Nothing is mixed.
 TEST(LightmapPadding, IsOfOneChart) {
   Lightmap map;
   map.width = 8;

@@ -16,15 +16,15 @@ PixelSamples pixel(std::initializer_list<double> luminances) {
 }
 
 TEST(PixelStatistics, OfEqualPixelsAreThoseOfEach) {
-  // Quarters 1, 3, 1, 3 about their mean 2: a variance of 4 / 3 of one sample, a fourth of it of the mean.
+  // Quarters 1, 3, 1, 3 about their mean 2: a variance of 4 / 3 of one sample, and a fourth of it for the mean.
   const std::vector<PixelSamples> pixels(6, pixel({1, 3, 1, 3}));
   const Eigen::VectorXd variances = pooled_variances(pixels, 3);
   for (Eigen::Index k = 0; k < 6; ++k) EXPECT_NEAR(variances[k], 1.0 / 3, 1e-15);
   EXPECT_NEAR(mean_relative_error(pixels, variances.cwiseSqrt()), std::sqrt(1.0 / 3) / 2, 1e-15);
 }
 
-// The rim of a lamp, of luminance 0 or 100, beside a wall of luminance 1 that is known exactly: half of the rim's
-// relative variance is the wall's, not half of its variance, which were a standard error of 2,000 % of the wall.
+// The rim of a lamp, of luminance 0 or 100, beside a wall of luminance 1 without noise. The wall gets half of the rim's
+// relative variance. Half of its absolute variance would be a standard error of 2,000 % of the wall.
 TEST(PixelStatistics, BesideARimGrowByItsRelativeVariance) {
   const std::vector<PixelSamples> pixels = {pixel({1, 1, 1, 1}), pixel({100, 0, 100, 0})};
   const Eigen::VectorXd variances = pooled_variances(pixels, 2);

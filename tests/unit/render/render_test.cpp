@@ -14,13 +14,13 @@
 namespace patchlight::render_test {
 namespace {
 
-// A square of edge 1 around `centre` in the plane y = centre.y, whose front looks to -y.
+// A square of edge 1 around `centre` in the plane `y = centre.y`, whose front faces -y.
 Quad upright_square(const Point& centre) {
   return {centre + Point(-0.5, 0, -0.5), centre + Point(0.5, 0, -0.5), centre + Point(0.5, 0, 0.5),
           centre + Point(-0.5, 0, 0.5)};
 }
 
-// Looks along +y; x is to the right and z upward in the picture.
+// A camera along +y. In the image x is to the right and z upward.
 Camera camera_along_y(double field_of_view) { return {Point(0, 0, 0), Point(0, 1, 0), field_of_view}; }
 
 Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& camera, const RenderOptions& options,
@@ -49,7 +49,8 @@ TEST(Render, ASquareSeenFromTheFrontFillsItsProjectedArea) {
   const Image image = picture_of(scene, Field::Constant(1, 1, 7), camera_along_y(50), options);
   ASSERT_EQ(image.pixels.rows(), 160 * 120);
   const double expected = projected_area(square, 50, 120);
-  // An upright or level edge is resolved in n^2 = 9 steps of a pixel: each of the four is off by at most half a step.
+  // A vertical or horizontal edge is resolved in n^2 = 9 steps of a pixel: the error of each of the four is at most
+  // half a step.
   const double tolerance = 4 * std::sqrt(expected) * 0.5 / 9;
   EXPECT_NEAR(image.pixels.sum() / 7, expected, tolerance);
   // No pixel is brighter than the square.
@@ -66,21 +67,21 @@ TEST(Render, ATiltedSquareFillsItsProjectedArea) {
   const Image image = picture_of(scene, Field::Constant(1, 1, 1), camera_along_y(60), options);
   const double expected = projected_area(square, 60, 200);
   ASSERT_GT(expected, 1500);
-  // The outline crosses at most 3/2 * perimeter * n of the n^2 cells per pixel, wrong by half a cell of 1/n^2 on
-  // average if all were wrong the same way; their signs alternate along an edge, so a fifth of it is generous.
+  // The outline crosses at most 3/2 * perimeter * n of the n^2 cells per pixel. Each has an average error of half a
+  // cell of 1/n^2. Their signs alternate along an edge, so a fifth of the total is a generous limit.
   const double perimeter = 4 * std::sqrt(expected);
   EXPECT_NEAR(image.pixels.sum(), expected, 0.2 * 1.5 * perimeter * 0.5 / 3);
 }
 
 TEST(Render, PixelsGoFromTheUpperLeft) {
-  // One bright square at the right, a darker one up.
+  // One bright square on the right, a darker one above.
   const Scene scene = quad_scene({upright_square({1.5, 4, 0}), upright_square({0, 4, 1.5})});
   Field radiance(2, 1);
   radiance << 3, 1;
   const RenderOptions options{.width = 90, .height = 90, .rays_per_pixel_edge = 2};
   const Image image = picture_of(scene, radiance, camera_along_y(60), options);
   const auto pixel = [&](int x, int y) { return image.pixels(y * 90 + x, 0); };
-  // 1.5 m at 4 m distance is 45 * 0.375 / tan(30 deg) = 29 pixels from the centre.
+  // 1.5 m at a distance of 4 m is 45 * 0.375 / tan(30 deg) = 29 pixels from the center.
   EXPECT_NEAR(pixel(45 + 29, 45), 3, 1e-12);
   EXPECT_NEAR(pixel(45, 45 - 29), 1, 1e-12);
   EXPECT_EQ(pixel(45 - 29, 45), 0);
@@ -88,7 +89,7 @@ TEST(Render, PixelsGoFromTheUpperLeft) {
 }
 
 TEST(Render, SidesWithoutPatchesAreTransparent) {
-  // Two back sides stand before the far square; from the other end the nearest front side hides everything.
+  // Two back sides stand before the far square. From the other end the nearest front side hides everything.
   Quad reversed = upright_square({0, 1, 0});
   std::swap(reversed[1], reversed[3]);
   Quad second = upright_square({0, 1.5, 0});
@@ -104,7 +105,7 @@ TEST(Render, SidesWithoutPatchesAreTransparent) {
   EXPECT_NEAR(picture_of(scene, radiance, from_behind, options).pixels(10 * 21 + 10, 0), 2, 1e-12);
 }
 
-// Three differently bright walls of a room, moved and turned together with the camera.
+// Three walls of a room with different brightness, moved and rotated together with the camera.
 TEST(Render, IsInvariantUnderRigidMotion) {
   const std::vector<Quad> room = inner_sides({0, 0, 0}, {4, 3, 2.5});
   const Camera camera{Point(0.5, 0.4, 1.6), Point(3, 2.5, 1), 70};
@@ -122,13 +123,13 @@ TEST(Render, IsInvariantUnderRigidMotion) {
   const Camera moved_camera{rotation * camera.eye + shift, rotation * camera.target + shift,
                             camera.vertical_field_of_view};
   const Image moved_image = picture_of(quad_scene(moved), radiance, moved_camera, options, rotation * Vector::UnitZ());
-  // Rays are traced in single precision: only those within some 1e-6 of an edge may change sides.
+  // Rays are traced in single precision: only those within about 1e-6 of an edge may change sides.
   int different = 0;
   for (Eigen::Index k = 0; k < image.pixels.rows(); ++k) {
     if ((image.pixels.row(k) - moved_image.pixels.row(k)).abs().maxCoeff() > 1e-9) ++different;
   }
   EXPECT_LE(different, 2);
-  EXPECT_GT(image.pixels.minCoeff(), 0.9);  // a closed room has no hole
+  EXPECT_GT(image.pixels.minCoeff(), 0.9);  // a closed room has no opening
 }
 
 TEST(Render, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -171,7 +172,7 @@ TEST(Render, CanBeCancelled) {
                Cancelled);
 }
 
-// A box of 2 x 2 x 2 m, y up, without the side at z = 0, and a block in it: the view is through the opening.
+// A box of 2 x 2 x 2 m, y up, without the side at z = 0, and a block in it. The view is through the opening.
 TEST(DefaultCamera, LooksThroughTheOpenSide) {
   std::vector<Quad> quads = inner_sides({0, 0, 0}, {2, 2, 2});
   quads.erase(quads.begin() + 4);
@@ -181,7 +182,7 @@ TEST(DefaultCamera, LooksThroughTheOpenSide) {
   }
   Scene scene = quad_scene(quads);
   scene.up = Vector::UnitY();
-  // With the outer sides of the walls kept too there is more to be seen from outside, but nothing better.
+  // With the outer sides of the walls, more is visible from outside, but no view is better.
   KeptSides both = front_sides(scene);
   both.back.assign(scene.polygons.size(), 1);
   for (const KeptSides& sides : {front_sides(scene), both}) {
@@ -191,7 +192,7 @@ TEST(DefaultCamera, LooksThroughTheOpenSide) {
     EXPECT_LT(camera.eye.z(), -0.8 * 2);
     EXPECT_GT(camera.eye.z(), -1.4 * 2);
     EXPECT_GT((camera.target - camera.eye).normalized().z(), 0.999);
-    // The opening fits the picture: half its height at its distance.
+    // The opening fits into the image: half its height at its distance.
     const double half_angle = camera.vertical_field_of_view * std::numbers::pi / 360;
     EXPECT_GT(-camera.eye.z() * std::tan(half_angle), 1);
     EXPECT_LT(-camera.eye.z() * std::tan(half_angle), 1.2);

@@ -10,8 +10,8 @@ namespace {
 
 using namespace test;
 
-// A floor of 4 x 2 m with a wall of no thickness on it at x = 1.3; patch edges of 1 m, so that the second column
-// straddles it.
+// A floor of 4 x 2 m with a wall of no thickness on it at x = 1.3. Patch edges are 1 m, so the wall crosses the second
+// column.
 Scene walled_floor() {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 2, 0), Point(0, 2, 0)});
   return with_quad(std::move(scene), {Point(1.3, 0, 0), Point(1.3, 2, 0), Point(1.3, 2, 1), Point(1.3, 0, 1)});
@@ -23,7 +23,7 @@ Eigen::VectorXd areas(const PatchMesh& mesh) {
   return Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
 }
 
-// The floor patches' value is `lit` where their centre lies beyond the wall, else 0.
+// The value of floor patches is `lit` if their center lies beyond the wall, else 0.
 Field lit_beyond_the_wall(const PatchMesh& mesh, double lit) {
   Field values = Field::Zero(mesh.size(), 1);
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -46,8 +46,8 @@ TEST(Smooth, AWallKeepsItsTwoSidesApart) {
   const PatchMesh mesh = mesh_of(scene);
   const Occluder occluder(scene, Occluder::Blockers::all);
   const SmoothField field = smooth(mesh, lit_beyond_the_wall(mesh, 1), areas(mesh), occluder);
-  // The patch from 1 to 2 has its centre on the lit side. Its corners at x = 1 are on the dark side, take nothing from
-  // it, and points on the dark side take nothing from its lit corners.
+  // The patch from 1 to 2 has its center on the lit side. Its corners at x = 1 are on the dark side and take nothing
+  // from it. Points on the dark side take nothing from its lit corners.
   EXPECT_EQ(value(mesh, field, occluder, Point(0.9, 1, 0)), 0);
   EXPECT_EQ(value(mesh, field, occluder, Point(1.2, 0.7, 0)), 0);
   EXPECT_EQ(value(mesh, field, occluder, Point(1.4, 0.7, 0)), 1);
@@ -60,7 +60,7 @@ TEST(Smooth, WithoutAWallItIsTheAreaWeightedMean) {
   const PatchMesh mesh = mesh_of(scene);
   const Occluder occluder(scene);
   const SmoothField field = smooth(mesh, lit_beyond_the_wall(mesh, 1), areas(mesh), occluder);
-  // Half way between a dark and a lit patch centre lies a vertex with their mean.
+  // A vertex halfway between the centers of a dark and a lit patch has their mean.
   EXPECT_DOUBLE_EQ(value(mesh, field, occluder, Point(1, 1, 0)), 0.5);
 }
 

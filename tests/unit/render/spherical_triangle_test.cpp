@@ -27,7 +27,8 @@ TEST(SphericalTriangle, IsEmptySeenFromItsEdge) {
 }
 
 TEST(SphericalTriangle, DirectionsAreUniformInItsSolidAngle) {
-  // The mean of the cosine to an axis is pi F / omega, and that of a part's indicator its share of the solid angle.
+  // The mean of the cosine to an axis is pi F / omega. The mean of a part's indicator is its fraction of the solid
+  // angle.
   const Point from(0.3, -0.2, 0);
   const std::array<Point, 3> corners{Point(-1, 1, 0.5), Point(1.5, 1, 0.4), Point(0.2, 0.6, 2)};
   const SphericalTriangle triangle(from, corners);
@@ -52,7 +53,7 @@ TEST(SphericalTriangle, DirectionsAreUniformInItsSolidAngle) {
 }
 
 TEST(SphericalTriangle, OfSmallSizeKeepsItsDirections) {
-  // A millimetre at ten metres
+  // 1 mm at 10 m
   const SphericalTriangle small(Point(0, 0, 0), {Point(10, 0, 0), Point(10, 1e-3, 0), Point(10, 0, 1e-3)});
   EXPECT_NEAR(small.solid_angle(), 5e-9, 1e-14);
   for (const auto& u : scrambled_sobol(64, 1)) {

@@ -8,7 +8,7 @@
 namespace patchlight::tone_map_test {
 namespace {
 
-// Of bands of which nothing is said.
+// The usual bands without metadata.
 auto tone_map(const Field& radiance, double exposure) {
   return patchlight::tone_map(radiance, exposure, usual_bands(radiance.cols()));
 }
@@ -39,7 +39,7 @@ TEST(ToneMap, IsMonotoneAndEndsAtWhite) {
   EXPECT_EQ(colours.back()[0], 255);
 }
 
-// White is reached gradually: at the display's white there is still something left above.
+// White is approached gradually: values above the display's white are still distinct.
 TEST(ToneMap, RollsHighlightsOff) {
   const auto colours = tone_map(grey(Eigen::ArrayXd::LinSpaced(4, 0.7, 1.3)), 1);
   for (std::size_t k = 0; k + 1 < colours.size(); ++k) EXPECT_LT(colours[k][0], colours[k + 1][0]);
@@ -64,7 +64,7 @@ TEST(ToneMap, ShowsOtherBandNumbersAsGrey) {
   EXPECT_EQ(tone_map(Field::Constant(1, 1, 0.25), 2)[0], (std::array<std::uint8_t, 3>{188, 188, 188}));
 }
 
-// All luminances are below the shoulder, so that 0.5 is shown as 188 in the channels of its band.
+// All luminances are below the shoulder, so 0.5 gives 188 in the channels of its band.
 TEST(ToneMap, ShowsBandsAsTheSceneSays) {
   const Bands bands = {{"450 nm", 0.2, {0, 0, 1}}, {"570 nm", 0.8, {1, 1, 0}}};
   const auto shown = [&](double blue, double yellow) {
@@ -89,7 +89,7 @@ Field some_radiance() {
   return radiance;
 }
 
-// Radiance k L needs exposure e / k and gives the same picture; k is a power of two, so to the bit.
+// Radiance k L needs exposure e / k and gives the same image; to the bit, because k is a power of two.
 TEST(ExposureFor, UndoesTheScaleOfTheRadiance) {
   const Field radiance = some_radiance();
   const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(100, 1, 2);
@@ -99,14 +99,14 @@ TEST(ExposureFor, UndoesTheScaleOfTheRadiance) {
   EXPECT_EQ(tone_map(scaled, exposure / 1024), tone_map(radiance, exposure));
 }
 
-// Nine tenths of the weight at luminance 2, one tenth at 100: 2 is shown as 0.7 of white, sRGB 218.
+// Nine tenths of the weight has luminance 2, one tenth 100. The value 2 gives 0.7 of white, sRGB 218.
 TEST(ExposureFor, ShowsTheNinetiethPercentileAtSevenTenths) {
   Eigen::ArrayXd values(3);
   values << 100, 2, 0;
   const double exposure = exposure_for(grey(values), Eigen::Vector3d(1, 9, 1000));
   EXPECT_NEAR(exposure, 0.35, 1e-15);
   EXPECT_EQ(tone_map(grey(values), exposure)[1][0], 218);  // 255 (1.055 0.7^(1/2.4) - 0.055) = 217.8
-  // A little less weight there, and the percentile is the bright one.
+  // With slightly less weight there, the percentile is the bright one.
   EXPECT_NEAR(exposure_for(grey(values), Eigen::Vector3d(1, 8, 1000)), 0.007, 1e-15);
 }
 
@@ -115,7 +115,7 @@ TEST(ExposureFor, IsOneInTheDark) {
   EXPECT_EQ(exposure_for(Field::Zero(0, 3), Eigen::VectorXd()), 1);
 }
 
-// Hue in degrees of a saturated colour, HSV.
+// Hue in degrees of a saturated color, HSV.
 double hue(const std::array<std::uint8_t, 3>& colour) {
   const double r = colour[0], g = colour[1], b = colour[2];
   const double low = std::min({r, g, b}), range = std::max({r, g, b}) - low;
@@ -132,7 +132,7 @@ TEST(FalseColor, GoesFromBlueToRedWithoutTurningBack) {
   EXPECT_NEAR(hue(colours[100]), 0, 20);
   for (std::size_t k = 0; k < 100; ++k) {
     EXPECT_GE(hue(colours[k]) + 1, hue(colours[k + 1]));  // one degree for the rounding to eight bits
-    // Smooth: no step beyond 4 % of the largest distance between two stops.
+    // Smooth: no step above 4 % of the largest distance between two stops.
     for (std::size_t c = 0; c < 3; ++c) EXPECT_LE(std::abs(colours[k][c] - colours[k + 1][c]), 10);
   }
 }

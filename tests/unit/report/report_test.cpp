@@ -7,7 +7,7 @@
 namespace patchlight::report_test {
 namespace {
 
-// What is emitted minus what is absorbed: with B = E + rho o H, sum A E - sum A (1 - rho) H = sum A (B - H).
+// Emitted minus absorbed light: with B = E + rho o H, sum A E - sum A (1 - rho) H = sum A (B - H).
 TEST(Report, LightOfTheMaterialsAddsUp) {
   const Simulation simulation = tiny_simulation();
   const Report report = report_of(tiny_scene(), {}, simulation);
@@ -38,7 +38,7 @@ TEST(Report, RateOfShadowRaysIsThatOfTheFormFactorsAlone) {
   EXPECT_EQ(report_of(tiny_scene(), {}, simulation).form_factors.rays_per_second, 200);
 }
 
-// One iteration of progressive refinement is as many shots as there are patches: three.
+// One iteration of progressive refinement is one shot per patch: three.
 TEST(Report, TellsRowsFromIterationsAsTheEnd) {
   Simulation simulation = tiny_simulation();
   simulation.plan.solver.max_iterations = 1;

@@ -28,7 +28,7 @@ TEST(RoomLight, OfAFurnaceIsUniform) {
   }
 }
 
-// All that a lamp sends is absorbed: Phi = sum A (1 - rho) H. In lux where lights are photometric.
+// All light of a lamp is absorbed: Phi = sum A (1 - rho) H, in lux if lights are photometric.
 TEST(RoomLight, OfARoomWithOneLampIsItsFluxOverWhatAbsorbs) {
   Scene scene = test::cube_room(0.5, 0);
   scene.materials.push_back(test::grey(0.5, 10));
@@ -47,8 +47,7 @@ TEST(RoomLight, OfARoomWithOneLampIsItsFluxOverWhatAbsorbs) {
   EXPECT_NEAR(in_lux.rooms.at(0).surfaces[0].mean, 179 * report.rooms[0].surfaces[0].mean, 1e-9);
 }
 
-// By EN 12464-1 the floor of 1 m^2 takes a grid with cells of 0.2 x 5^0 = 0.2 m, and the walls, of which each has
-// 1 m^2, the same.
+// The floor of 1 m^2 has a grid with cells of 0.2 x 5^0 = 0.2 m by EN 12464-1. Each wall of 1 m^2 has the same.
 TEST(RoomLight, IsCoarseOnPatchesLargerThanTheStandardsGrid) {
   const Scene scene = test::cube_room(0.5, 3);
   const auto is_coarse = [&](double edge) {
@@ -62,7 +61,7 @@ TEST(RoomLight, IsCoarseOnPatchesLargerThanTheStandardsGrid) {
   EXPECT_FALSE(is_coarse(0.18));
 }
 
-// Or where points of a patch are darker than the least mean by more than a tenth.
+// Also if points within a patch are darker than the least mean by more than a tenth.
 TEST(RoomLight, IsCoarseOnPatchesWithinWhichItDiffers) {
   Request request;
   request.mesh.max_edge = 0.1;
@@ -76,7 +75,7 @@ TEST(RoomLight, IsCoarseOnPatchesWithinWhichItDiffers) {
   }
 }
 
-// Neither the box in the room nor the lamp below its ceiling bounds it, whether the room has a name or is a shell.
+// The box in the room and the lamp below its ceiling do not bound it, whether the room has a name or is a shell.
 TEST(RoomLight, LeavesOutWhatStandsInTheRoom) {
   Scene scene = test::furnished_room(0.5);
   const Report by_shell = report_on(scene);
@@ -94,8 +93,8 @@ TEST(RoomLight, LeavesOutWhatStandsInTheRoom) {
   }
 }
 
-// As in gbXML, whose rooms end at the inner sides of walls that are drawn by their middle planes, and at ceilings below
-// floors. Patches at edges, beside the body, may be left out. The lamp below the ceiling is another ceiling there.
+// In gbXML, rooms end at the inner sides of walls that are drawn by their middle planes, and at ceilings below floors.
+// Patches at edges, beside the body, may be omitted. The lamp below the ceiling counts as another ceiling.
 TEST(RoomLight, TakesWallsThatStandOutsideOfTheBody) {
   Scene scene = test::furnished_room(0.5);
   NamedRoom room{"A102", "", {}};
@@ -113,8 +112,8 @@ TEST(RoomLight, TakesWallsThatStandOutsideOfTheBody) {
   EXPECT_LE(surfaces[ceiling_of_room].area, 12 + 1);
 }
 
-// The body of the room ends 10 cm above the floor, so that faces farther off count; a layer within the slab, which lies
-// under the floor, does not, though it is lit.
+// The body of the room ends 10 cm above the floor, so more distant faces count. A layer within the slab under the floor
+// does not count, though it is lit.
 TEST(RoomLight, LeavesOutLayersWithinASlab) {
   Scene scene = test::furnished_room(0.5);
   scene.materials.push_back(test::grey(0.5, 1));
@@ -141,7 +140,7 @@ TEST(RoomLight, TakesFloorsByTheAxisThatIsUp) {
   EXPECT_NEAR(report.rooms.at(0).surfaces[walls_of_room].area, 39, 1e-9);
 }
 
-// As within a wall of a closed model.
+// The same within a wall of a closed model.
 TEST(RoomLight, LeavesOutPatchesThatNoLightReaches) {
   Simulation simulation = tiny_simulation();
   EXPECT_EQ(report_of(tiny_scene(), {}, simulation).rooms.at(0).surfaces[floor_of_room].area, 1);

@@ -61,13 +61,13 @@ TEST(ContactLines, RunUnderABlockThatIsClose) {
   EXPECT_TRUE(lines_on_floor(with_cube_at(floor_scene(), 1)).empty());
 }
 
-// A block that hangs through the floor: no edge of it lies there.
+// A block that extends through the floor, with no edge in its plane.
 TEST(ContactLines, RunWhereFacesCross) {
   const std::vector<ContactLine> lines = lines_on_floor(with_cube_at(floor_scene(), -0.4));
   EXPECT_NEAR(length_of(lines), 4, 1e-12);
 }
 
-// What stands on the side of the floor that has no patches draws nothing on the other.
+// Objects on the side of the floor without patches cause no lines on the other side.
 TEST(ContactLines, AreOfKeptSidesOnly) { EXPECT_TRUE(lines_on_floor(with_cube_at(floor_scene(), -1.1)).empty()); }
 
 TEST(ContactLines, LeaveOutEdgesOfThePolygonItself) {
@@ -75,7 +75,7 @@ TEST(ContactLines, LeaveOutEdgesOfThePolygonItself) {
   EXPECT_EQ(length_of(lines_on_floor(room)), 0);
 }
 
-// The triangles of a disc close over the floor end at its rim alone.
+// The triangles of a disc close over the floor end only at its rim.
 TEST(ContactLines, LeaveOutEdgesOverWhichAFaceGoesOn) {
   Scene scene = floor_scene();
   constexpr int count = 24;
@@ -92,7 +92,7 @@ TEST(ContactLines, LeaveOutEdgesOverWhichAFaceGoesOn) {
   EXPECT_NEAR(length_of(lines_on_floor(scene)), count * 2 * std::sin(std::numbers::pi / count), 1e-9);
 }
 
-// Turned, moved and scaled they are the same lines.
+// They are the same lines after rotation, motion and scaling.
 TEST(ContactLines, FollowTheScene) {
   const Scene scene = with_cube_at(with_box(floor_scene(), Point(3, 3, 0.03), Point(3.5, 3.5, 1), false), -0.4);
   const Eigen::Affine3d motion =

@@ -50,8 +50,7 @@ TEST(Coverings, OfEqualOnesTheFirstLiesOver) {
   EXPECT_EQ(over(scene_of({floor_quad, shifted}), 0), Over{});
 }
 
-// Form factors are stored and used again with other lamps: what lies over what depends on none but those in the faces
-// of solids.
+// Stored form factors are used again with other lamps. So coverings depend only on lamps that are faces of solids.
 TEST(Coverings, DoNotDependOnLampsButALampThatIsCoveredIsNamed) {
   Scene scene = scene_of({rectangle(1, 1, 2, 2)});
   scene = with_quad(std::move(scene), floor_quad, 1);
@@ -66,12 +65,12 @@ TEST(Coverings, DoNotDependOnLampsButALampThatIsCoveredIsNamed) {
 
 TEST(Coverings, OnlySidesThatFaceTheSameWayAndAreKeptCover) {
   const Scene scene = scene_of({floor_quad, turned(rectangle(1, 1, 2, 2))});
-  EXPECT_EQ(over(scene, 0), Over{});  // the rug's front looks down, its back is not kept
+  EXPECT_EQ(over(scene, 0), Over{});  // the rug's front faces down, and its back is not kept
   EXPECT_EQ(over(scene, 0, Side::front, Sides::both), Over{1});
   EXPECT_EQ(over(scene, 0, Side::back, Sides::both), Over{1});
 }
 
-// Polygon 0 is a floor with both sides, 1 the bottom of a box that stands on it, 7 a rug with one side.
+// Polygon 0 is a floor with both sides. Polygon 1 is the bottom of a box on it, and 7 a rug with one side.
 TEST(Coverings, AFaceSeenFromBothSidesLiesOverASolidThatStandsAgainstIt) {
   Scene scene = with_box(scene_of({floor_quad}), Point(1, 1, 0), Point(2, 2, 1), false);
   scene = with_quad(std::move(scene), rectangle(2.5, 2.5, 3.5, 3.5));
@@ -84,7 +83,7 @@ TEST(Coverings, AFaceSeenFromBothSidesLiesOverASolidThatStandsAgainstIt) {
     EXPECT_TRUE(standing.lies_over(0, 1, Side::front));
     EXPECT_TRUE(standing.lies_over(7, 0, Side::front)) << "a rug is no solid";
     ASSERT_EQ(problems_with_overlaps(scene, standing).size(), 2U) << "the rug's floor, and the box";
-    // A lamp that is let into a ceiling shines.
+    // A lamp recessed into a ceiling shines.
     scene.polygons[1].material = 1;
     const Coverings let_in = find_coverings(scene, kept);
     EXPECT_TRUE(let_in.lies_over(1, 0, Side::back));
@@ -92,8 +91,8 @@ TEST(Coverings, AFaceSeenFromBothSidesLiesOverASolidThatStandsAgainstIt) {
   }
 }
 
-// Of a floor with both sides, polygon 0, the lamp in the side of a solid, 1, and the side of a smaller solid, 7, which
-// overlap in one plane, no two lie over each other in turn.
+// Three faces overlap in one plane: a floor with both sides, polygon 0, a lamp in the side of a solid, 1, and the side
+// of a smaller solid, 7. No two of them cover each other.
 TEST(Coverings, OfThreeThatOverlapOneIsInSight) {
   Scene scene = with_box(scene_of({floor_quad}), Point(1, 1, 0), Point(3, 3, 1), false);
   scene = with_box(std::move(scene), Point(1.5, 1.5, 0), Point(2, 2, 0.5), false);
@@ -106,7 +105,7 @@ TEST(Coverings, OfThreeThatOverlapOneIsInSight) {
 }
 
 TEST(Coverings, PolygonsThatRoundingSetsApartLieInOnePlane) {
-  // The extent is 6: 1e-6 is below 3e-7 of it, 3e-6 is not. Which one is in front does not matter.
+  // The extent is 6: 1e-6 is below 3e-7 of it, but 3e-6 is not. The order in depth does not matter.
   for (const double height : {1e-6, -1e-6}) {
     EXPECT_EQ(over(scene_of({floor_quad, rectangle(1, 1, 2, 2, height)}), 0), Over{1});
     EXPECT_EQ(over(scene_of({floor_quad, rectangle(1, 1, 2, 2, 3 * height)}), 0), Over{});

@@ -24,15 +24,15 @@ TEST(PerezClass, HasTheLimitsOfTheTable) {
 }
 
 TEST(MeasuredDaylight, HasPerezsClearnessAndBrightness) {
-  // By hand with Perez et al. 1990, eqs. 1 and 2: a sun at the zenith, where the air mass is 0.9997 and its term in the
-  // clearness is 0: (100 + 400) / 100; 100 / (1367 x 1.0330) on the first of January.
+  // Perez et al. 1990, eqs. 1 and 2, by hand. With the sun at the zenith the air mass is 0.9997, and its term in the
+  // clearness is 0. The clearness is (100 + 400) / 100, the brightness 100 / (1367 x 1.0330) on January 1.
   const Daylight day = measured_daylight({400, 100, 1}, Vector::UnitZ(), Vector::UnitZ(), 3);
   ASSERT_TRUE(day.sky && day.sun);
   EXPECT_EQ(day.sky->kind, SkyKind::perez);
   EXPECT_NEAR(day.sky->clearness, 5, 1e-12);
   EXPECT_NEAR(day.sky->brightness, 100 / (1367 * 1.0330), 1e-4);
-  // Class 7 with 2 cm of water: 141.88 + 1.90 x 2 - 53.24 - 14.03 ln 0.07081 lm/W for the sky, and for the sun 105.75 +
-  // 0.77 x 2 - 1.26 exp(-5) - 34.44 x 0.07081.
+  // Class 7 with 2 cm of water. Sky: 141.88 + 1.90 x 2 - 53.24 - 14.03 ln 0.07081 lm/W. Sun: 105.75 + 0.77 x 2 - 1.26
+  // exp(-5) - 34.44 x 0.07081.
   EXPECT_NEAR(luminance(day.sky->horizontal_irradiance), 100 * (92.44 + 14.03 * 2.6477), 5);
   EXPECT_NEAR(luminance(day.sun->normal_irradiance), 400 * (107.29 - 0.00849 - 2.4387), 5);
 }

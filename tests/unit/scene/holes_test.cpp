@@ -30,7 +30,7 @@ Scene four_quads_around_a_window() {
   return with_quad(std::move(scene), on_wall(1, 3, 2, 3));
 }
 
-// One polygon that runs around the hole on a seam.
+// One polygon that runs around the hole along a seam.
 Scene wall_with_a_seam() {
   return with_polygon(empty_scene({grey(0.5)}),
                       {Point(0, 0, 0), Point(4, 0, 0), Point(4, 0, 3), Point(0, 0, 3), Point(0, 0, 0), Point(1, 0, 1),
@@ -38,7 +38,7 @@ Scene wall_with_a_seam() {
 }
 
 TEST(HolesBetweenFaces, AreWhatTheFacesOfAPlaneLeaveFree) {
-  // In metres and millimetres, turned.
+  // In meters, and rotated in millimeters.
   const Eigen::Affine3d turned =
       Eigen::Translation3d(3, -7, 2) * Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()) * Eigen::Scaling(0.001);
   for (const Eigen::Affine3d& motion : {Eigen::Affine3d::Identity(), turned}) {
@@ -55,13 +55,13 @@ TEST(HolesBetweenFaces, AreFilledByPanes) {
 }
 
 TEST(HolesBetweenFaces, AreNoneInAFaceThatIsBentALittle) {
-  // Its corners are farther from their mean plane than vertices that are one are from each other.
+  // The distance of its corners from their mean plane exceeds the weld distance of vertices.
   Quad bent{Point(0, 0, 0), Point(10, 0, 0), Point(10, 10, 1e-4), Point(0, 10, 0)};
   EXPECT_EQ(area_of_holes(with_quad(empty_scene({grey(0.5)}), bent)), 0);
 }
 
 TEST(HolesBetweenFaces, HaveNothingOfFacesInOtherPlanes) {
-  // A sheet close behind the window leaves it free.
+  // A sheet close behind the window does not cover it.
   const Scene scene = moved(with_quad(empty_scene({grey(0.5)}), on_wall(0, 4, 0, 3)),
                             Eigen::Affine3d(Eigen::Translation3d(0, 0.01, 0)));
   Scene both = four_quads_around_a_window();

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// A square of `size` metres in n x n squares of two triangles each, all or those that `has` names.
+// A square of `size` meters in n x n squares of two triangles each: all of them, or those selected by `has`.
 template <typename Has>
 Scene triangulated(int n, double size, Has has) {
   Scene scene = empty_scene({grey(0.5), grey(0.2)});

@@ -1,4 +1,4 @@
-// Geometry of many corners and faces, which goes by trees; tests/benchmarks/growth.py measures the time.
+// Geometry of many corners and faces, which uses trees. tests/benchmarks/growth.py measures the time.
 #include "scene/coverings.h"
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
@@ -17,7 +17,7 @@ using namespace test;
 
 KeptSides both_sides(const Scene& scene) { return kept_sides(scene, Sides::both); }
 
-// Triangles that cover the polygon: their areas add up to its own, with rounding of 1e-16 for each of 10,000. A
+// Triangles that cover the polygon: their areas add up to its area, with rounding of 1e-16 for each of 10,000. A
 // polygon of n corners has n - 2 (Meisters 1975).
 TEST(Large, TheTrianglesOfADiscCoverIt) {
   const std::vector<Point> outline = disc(10000);
@@ -30,7 +30,7 @@ TEST(Large, TheTrianglesOfADiscCoverIt) {
   EXPECT_NEAR(sum, area_vector(outline).norm(), 1e-11);
 }
 
-// One pair of neighbours in the wrong order makes a crossing.
+// One swapped pair of neighbors causes a crossing.
 TEST(Large, ACrossingIsFoundAmongManyEdges) {
   std::vector<Point> outline = disc(10000);
   EXPECT_FALSE(crosses_itself(outline));
@@ -43,7 +43,7 @@ TEST(Large, FacesOnOneEdgeDoNotCoverEachOther) {
   EXPECT_TRUE(find_coverings(scene, both_sides(scene)).over.empty());
 }
 
-// The oracle: every pair of some hundred quadrilaterals in a few planes, clipped one by the other.
+// The oracle: all pairs of a few hundred quadrilaterals in a few planes, clipped against each other.
 TEST(Large, CoveringsAreThoseOfAllPairs) {
   std::mt19937 chance(1);
   std::uniform_real_distribution<double> place(0, 3);

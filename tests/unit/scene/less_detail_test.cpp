@@ -75,7 +75,7 @@ TEST(LessDetail, ATurnedRodIsABoxThatHoldsIt) {
   EXPECT_FALSE(less.diagnostics.empty());
 }
 
-// A closed frame around an opening is near its box everywhere, and yet no box.
+// A closed frame around an opening is near its bounding box everywhere, but is no box.
 TEST(LessDetail, AFrameStaysOpen) {
   Scene scene = room();
   const auto begin = static_cast<std::uint32_t>(scene.vertices.size());
@@ -106,7 +106,7 @@ TEST(LessDetail, ARoomAColumnALampAndAPaneStay) {
   EXPECT_EQ(with_less_detail(scene, 0.1).polygons.size(), scene.polygons.size());
 }
 
-// A room in triangles is a box that holds what stands in it.
+// A room in triangles is a box with contents.
 TEST(LessDetail, ARoomOfTrianglesStays) {
   const Scene scene = in_triangles(with_box(room(), Point(1, 1, 1), Point(1.8, 1.8, 1.8), false));
   EXPECT_EQ(with_less_detail(repair(scene), 0.05).polygons.size(), 12u + 6u);  // the box inside is one of six faces

@@ -13,14 +13,14 @@ constexpr double pi = std::numbers::pi;
 
 const LuminaireFrame down{-Vector::UnitZ(), Vector::UnitX()};
 
-// In a direction so many degrees from the nadir, turned so many from x towards y.
+// A direction at angle `vertical` from the nadir, rotated by `horizontal` from x towards y, in degrees.
 Vector from_nadir(double vertical, double horizontal) {
   const double v = vertical * pi / 180;
   const double h = horizontal * pi / 180;
   return {std::sin(v) * std::cos(h), std::sin(v) * std::sin(h), -std::cos(v)};
 }
 
-// The table is 100 h + v, so that each direction tells where it was looked up.
+// The table is 100 h + v, so each value identifies its direction.
 PhotometricWeb telling(PhotometricType type, std::vector<double> vertical, std::vector<double> horizontal) {
   PhotometricWeb web;
   web.type = type;
@@ -62,8 +62,8 @@ TEST(Candela, IsZeroBeyondTheTable) {
 }
 
 TEST(Candela, OfTypesAAndBGoesUpAndToTheSide) {
-  // Aimed at y with its top at z, so that its right hand is x. 30 degrees to the right on the equator is the same for
-  // both; of a direction both right and up they tell different angles, atan and asin being exchanged.
+  // Aimed at y with its top at z, so its right is x. 30 degrees to the right on the equator is the same for both. For a
+  // direction to the right and up the angles differ: atan and asin are exchanged.
   const LuminaireFrame ahead{Vector::UnitY(), Vector::UnitZ()};
   const PhotometricWeb a = telling(PhotometricType::a, {-90, 90}, {-90, 90});
   const PhotometricWeb b = telling(PhotometricType::b, {-90, 90}, {-90, 90});
@@ -74,19 +74,20 @@ TEST(Candela, OfTypesAAndBGoesUpAndToTheSide) {
   const double corner = std::asin(1 / std::sqrt(3.0)) * 180 / pi;
   EXPECT_NEAR(candela(a, ahead, both), 4500 + corner, 1e-8);
   EXPECT_NEAR(candela(b, ahead, both), 100 * corner + 45, 1e-8);
-  // From 0: left as right.
+  // From 0: left and right are symmetric.
   const PhotometricWeb symmetric = telling(PhotometricType::b, {-90, 90}, {0, 90});
   EXPECT_NEAR(candela(symmetric, ahead, Vector(-right.x(), right.y(), 0)), 3000, 1e-8);
 }
 
 TEST(LuminousFlux, OfIntensitiesWithAClosedForm) {
-  // Everywhere 1 cd: 4 pi lm, whatever the symmetry; the midpoint rule is off by (half a degree)^2 / 24 = 3e-6 of it.
+  // 1 cd in all directions: 4 pi lm, for any symmetry. The midpoint rule has a relative error of (half a degree)^2 / 24
+  // = 3e-6.
   for (const auto& horizontal : {std::vector<double>{0}, {0, 90}, {0, 180}, {0, 360}}) {
     PhotometricWeb web = telling(PhotometricType::c, {0, 180}, horizontal);
     web.candela.assign(web.candela.size(), 1);
     EXPECT_NEAR(luminous_flux(web), 4 * pi, 1e-4);
   }
-  // cos v below, a table of 1 degree: pi lm; chords are (1 degree)^2 / 12 = 2.5e-5 of it too low.
+  // cos v below, in a table of 1 degree: pi lm. Chords are too low by a fraction (1 degree)^2 / 12 = 2.5e-5.
   PhotometricWeb lambert;
   lambert.horizontal = {0};
   for (int v = 0; v <= 90; ++v) {
@@ -113,8 +114,8 @@ TEST(SpotProfile, IsAHalfAtTheBeamAndATenthAtTheField) {
 }
 
 TEST(SpotSolidAngle, OfANarrowGaussianBeam) {
-  // 2^-(a / b)^2 integrates to pi b^2 / ln 2 in the plane; on the sphere, where a ring is sin a = a - a^3 / 6 wide, to
-  // the share b^2 / (6 ln 2) less, with b = 0.0175 and terms of its square left out.
+  // 2^-(a / b)^2 integrates to pi b^2 / ln 2 in the plane. On the sphere a ring has the width sin a = a - a^3 / 6, so
+  // the integral is lower by the fraction b^2 / (6 ln 2), with b = 0.0175 and without higher terms.
   const double field = std::sqrt(std::log2(10.0));
   const double b = pi / 180;
   const double expected = pi * b * b / std::log(2.0) * (1 - b * b / (6 * std::log(2.0)));

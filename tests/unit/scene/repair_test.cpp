@@ -38,7 +38,7 @@ std::vector<DiagnosticCode> kinds(const Scene& scene) { return codes_of(scene.di
 
 using Kinds = std::vector<DiagnosticCode>;
 
-// What meshing relies on: every patch has a positive area, and together they have the scene's.
+// Requirements of meshing: every patch has a positive area, and together they have the scene's.
 void expect_meshable(const Scene& scene) {
   check(scene);
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -66,7 +66,7 @@ TEST(Repair, LeavesASoundSceneAsItIs) {
     EXPECT_EQ(repaired.polygons[p].line, p + 1);
     EXPECT_EQ(repaired.polygons[p].face, p);
   }
-  // Two boxes and a lamp: the vertices of a box are shared by its faces.
+  // Two boxes and a lamp: the faces of a box share its vertices.
   EXPECT_EQ(repaired.vertices.size(), 20U);
 }
 
@@ -83,7 +83,7 @@ TEST(Repair, IsIdempotent) {
 }
 
 TEST(Repair, WeldsWhatRoundingHasSetApart) {
-  // Every face has corners of its own, off by up to half the weld distance of 4e-6.
+  // Every face has its own corners, with errors up to half the weld distance of 4e-6.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> jitter(-1e-6, 1e-6);
   Scene scene = furnished_room(0.5);
@@ -114,7 +114,7 @@ TEST(Repair, LeavesOutRepeatedCornersAndSpikes) {
     EXPECT_EQ(kinds(repaired), Kinds{DiagnosticCode::repeated_corners});
     expect_meshable(repaired);
   }
-  // A spike that ends in the middle of an edge, or goes on along the next one.
+  // A spike that ends in the middle of an edge, or continues along the next one.
   for (const Point& tip : {Point(0, 5, 0), Point(0, -2, 0)}) {
     const Scene repaired = repair(one_polygon({a, b, c, d, tip}));
     ASSERT_EQ(repaired.polygons.size(), 1U);
@@ -186,7 +186,7 @@ TEST(Repair, ALampBehindAFaceThatDoesNotEmitIsAnError) {
   EXPECT_EQ(kinds(repair(numbered(before))), Kinds{DiagnosticCode::duplicate_faces});
 }
 
-// Both halves of a folded square have half its area, over whichever diagonal it is folded.
+// Both halves of a folded square have half its area, for a fold along either diagonal.
 TEST(Repair, CutsBentFacesIntoTrianglesWhereTheyBend) {
   for (const double height : {0.001, 0.1, 1.0, 10.0}) {
     const Scene fold = repair(one_polygon({Point(0, 0, 0), Point(1, 0, height), Point(1, 1, 0), Point(0, 1, height)}));
@@ -230,7 +230,7 @@ TEST(Repair, CutsFacesThatCrossThemselves) {
   expect_meshable(pentagram);
 }
 
-// Random closed curves, nearly all of which cross themselves: what comes out can be meshed, whatever it is.
+// Random closed curves, nearly all of which cross themselves: every result can be meshed.
 TEST(Repair, MakesRandomPolygonsMeshable) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -253,7 +253,7 @@ TEST(Repair, MakesPolygonsThatPassCornersTwiceMeshable) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 2000; ++trial) {
-    // Of few points, so that the outline passes most of them twice; every other trial in one plane.
+    // Outlines of few points, so that most points occur twice. Every other trial lies in one plane.
     std::vector<Point> points;
     for (int k = 0; k < 5; ++k) points.emplace_back(uniform(random), uniform(random), trial % 2 * uniform(random));
     std::vector<Point> corners;
@@ -278,7 +278,7 @@ TEST(Repair, CountsTurnedFacesAndBranchedEdges) {
   EXPECT_EQ(fin.diagnostics[0].faces.size(), 3U);
 }
 
-// A polygon with holes, each joined to the outline by a seam: area and mesh are those of the outline less the holes.
+// A polygon with holes, each joined to the outline by a seam: area and mesh are those of the outline minus the holes.
 TEST(Repair, SeamsToHolesLeaveHoles) {
   const auto square = [](double x, double y, double size) {
     return std::vector<Point>{Point(x, y, 0), Point(x + size, y, 0), Point(x + size, y + size, 0),
@@ -342,8 +342,8 @@ TEST(Repair, RefusesWhatIsNoGeometry) {
   }
 }
 
-// Most faces are so small beside the largest that a ray of one cannot be told from that of another: the small ones are
-// left out, not the large one as far from most of the model.
+// Most faces are so small compared with the largest that rays cannot distinguish them. The small ones are removed. The
+// large one is not removed as distant from most of the model.
 TEST(Repair, LeavesOutFacesThatAreNothingBesideTheRest) {
   for (const double unit : {1.0, 1e-3}) {
     for (const double small : {1e-13, 2e-20, 2.278e-41}) {

@@ -8,7 +8,7 @@
 namespace patchlight::room_body_test {
 namespace {
 
-// An L: a square of 2 m without its upper right quarter, 1 m high, as a floor plan that is drawn up.
+// An L: a square of 2 m without its upper right quarter, 1 m high, as an extruded floor plan.
 std::vector<std::vector<Point>> l_shape() {
   const std::vector<Point> plan = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
   const Vector up = Vector::UnitZ();
@@ -26,7 +26,7 @@ void expect_l_shape(const RoomBody& body) {
   EXPECT_TRUE(body.holds({0.5, 0.5, 0.5}));
   EXPECT_TRUE(body.holds({1.9, 0.9, 0.1}));
   EXPECT_TRUE(body.holds({0.1, 1.9, 0.9}));
-  EXPECT_FALSE(body.holds({1.5, 1.5, 0.5}));  // in the box around it
+  EXPECT_FALSE(body.holds({1.5, 1.5, 0.5}));  // in the bounding box
   EXPECT_FALSE(body.holds({0.5, 0.5, 1.1}));
   EXPECT_FALSE(body.holds({-1, 0.5, 0.5}));
 }
@@ -39,7 +39,7 @@ TEST(RoomBody, ThatIsTurnedInsideOutHoldsTheSame) {
   expect_l_shape(RoomBody(faces));
 }
 
-// As a wall between two rooms is turned for one of them.
+// The orientation of a wall between two rooms in one of them.
 TEST(RoomBody, WithOneFaceTurnedHoldsTheSame) {
   for (std::size_t turned = 0; turned < l_shape().size(); ++turned) {
     std::vector<std::vector<Point>> faces = l_shape();

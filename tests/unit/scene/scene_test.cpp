@@ -23,7 +23,7 @@ Scene square_scene() {
   return scene;
 }
 
-// What check() says of a scene; empty when it is content.
+// The message of check() for a scene. Empty if it accepts the scene.
 std::string refusal(const Scene& scene) {
   try {
     check(scene);
@@ -58,7 +58,7 @@ TEST(Scene, ALampEmitsInAnyBand) {
 }
 
 TEST(Scene, FloorsAndCeilingsTellWhichAxisIsUp) {
-  // 6 x 4 x 2.5: floor and ceiling 24, the next larger walls 15.
+  // 6 x 4 x 2.5: floor and ceiling have 24, the next larger walls 15.
   EXPECT_EQ(upright_axis(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(6, 4, 2.5), true)),
             Vector(Vector::UnitZ()));
   EXPECT_EQ(upright_axis(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(6, 2.5, 4), true)),
@@ -145,7 +145,7 @@ TEST(CheckScene, RefusesAnEmptySceneAndVerticesThatAreNotFinite) {
   EXPECT_TRUE(begins(refusal(scene), "room.obj: found no faces"));
 }
 
-// Whether a face is planar or has an area is a question of shape, not of size.
+// Planarity and area of a face are questions of shape, not of size.
 TEST(CheckScene, DoesNotDependOnTheSizeOfTheModel) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     Scene scene = square_scene();

@@ -13,7 +13,7 @@ Scene box_of(const Material& material, bool inward) {
   return with_box(empty_scene({material}), Point(0, 0, 0), Point(4, 3, 2.5), inward);
 }
 
-// Over an L of two arms 1 m wide and 4 m long, closed, 3 m high; in its nook x and y are more than 1.
+// A closed house over an L of two arms, 1 m wide and 4 m long, 3 m high. In its nook x and y exceed 1.
 Scene bent_house() {
   const std::vector<Point> outline = {Point(0, 0, 0), Point(4, 0, 0), Point(4, 1, 0),
                                       Point(1, 1, 0), Point(1, 4, 0), Point(0, 4, 0)};
@@ -54,7 +54,7 @@ TEST(SealedRoom, IsNoBodyInTheOpen) {
   EXPECT_FALSE(sealed_hull(with_box(box_of(grey(0.5), true), Point(5, 0, 0), Point(6, 1, 1), false)));
 }
 
-// What stands in its nook is in the open; a picture on one of its walls, or what lies 100 km away, is not.
+// An object in the nook is outdoors. A picture on one of its walls is not, and neither is an object 100 km away.
 TEST(SealedRoom, HoldsAllButWhatIsFar) {
   EXPECT_TRUE(is_sealed_room(with_box(bent_house(), Point(0.2, 0.2, 1), Point(0.8, 3.8, 2), false)));
   EXPECT_FALSE(sealed_hull(with_box(bent_house(), Point(2, 2, 0), Point(3, 3, 2), false)));
@@ -63,7 +63,7 @@ TEST(SealedRoom, HoldsAllButWhatIsFar) {
   EXPECT_TRUE(sealed_hull(with_box(bent_house(), Point(1e5, 2, 0), Point(1e5 + 1, 3, 2), false)));
 }
 
-// However many things stand inside, and however few outside.
+// For any number of objects inside, and for few outside.
 TEST(SealedRoom, HoldsAllOfMany) {
   Scene scene = bent_house();
   for (int k = 0; k < 300; ++k)
@@ -91,7 +91,7 @@ TEST(SealedRoom, HasALampUnderItsCeiling) {
   }
 }
 
-// The middle of its box, (2, 2), lies outside of the L.
+// The middle of its box, (2, 2), lies outside the L.
 TEST(SealedRoom, OfAnyShapeHoldsItsLamp) {
   const Scene scene = bent_house();
   const std::optional<Solid> room = sealed_hull(scene);
@@ -102,7 +102,7 @@ TEST(SealedRoom, OfAnyShapeHoldsItsLamp) {
   EXPECT_NEAR(lamp->z(), 2.7, 1e-12);
 }
 
-// The faces of a spire over a corner are too steep for a ceiling, and over the middle of its box is no room.
+// The faces of a spire over a corner are too steep for a ceiling, and there is no room over the middle of its box.
 TEST(SealedRoom, HasNoLampWhereNoneFits) {
   Scene scene = empty_scene({grey(0.5)});
   scene.up = Vector::UnitZ();

@@ -12,7 +12,7 @@ double length_of(const std::vector<std::array<Point, 2>>& pieces) {
   return length;
 }
 
-// A level plane cuts the four walls of a box of 4 x 3 x 2.5 m along 14 m, and nothing above it.
+// A horizontal plane cuts the four walls of a box of 4 x 3 x 2.5 m along 14 m. Above the box it cuts nothing.
 TEST(Section, OfABoxIsItsOutline) {
   const Scene scene = test::with_box(test::empty_scene({test::grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   const auto pieces = section_of(scene, Point(9, 9, 1), Vector::UnitZ());
@@ -22,8 +22,8 @@ TEST(Section, OfABoxIsItsOutline) {
   EXPECT_TRUE(section_of(scene, Point(0, 0, 3), Vector::UnitZ()).empty());
 }
 
-// An upright wall of 5 x 3 m with a door of 1 x 2 m that stands on its lower edge, and a window joined to the outline
-// by a seam: at 1.5 m the wall is cut beside both, at 2.5 m all along.
+// A vertical wall of 5 x 3 m with a door of 1 x 2 m on its lower edge, and a window joined to the outline by a seam. At
+// 1.5 m the wall is cut beside both, at 2.5 m along its whole length.
 TEST(Section, LeavesOutDoorsAndHoles) {
   const std::vector<Point> wall = {Point(0, 0, 0), Point(1, 0, 0), Point(1, 0, 2), Point(2, 0, 2), Point(2, 0, 0),
                                    Point(5, 0, 0), Point(5, 0, 3), Point(3, 0, 2), Point(4, 0, 2), Point(4, 0, 1),

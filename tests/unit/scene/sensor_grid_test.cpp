@@ -27,7 +27,7 @@ TEST(CellsAlong, RoundingMakesNoCellMore) {
   EXPECT_EQ(cells_along(0.01, 0.1), 1);
 }
 
-// An L of 4 x 4 m without a quarter, in two polygons, turned by 30 degrees: with cells of 0.5 m none is cut.
+// An L of 4 x 4 m without a quarter, in two polygons, rotated by 30 degrees: no cell of 0.5 m is cut.
 TEST(FloorGrid, CoversTheFloorOfAnyShapeAndTurn) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(4, 0, 1), Point(4, 2, 1), Point(0, 2, 1)});
@@ -49,7 +49,7 @@ TEST(FloorGrid, CoversTheFloorOfAnyShapeAndTurn) {
   }
 }
 
-// 40 x 28 m in two triangles, turned by 30 degrees: rows go along its edges, not along the longer diagonal.
+// 40 x 28 m in two triangles, rotated by 30 degrees: rows are parallel to its edges, not to the longer diagonal.
 TEST(FloorGrid, StandsParallelToTheRimOfATriangulatedFloor) {
   const Eigen::Affine3d turn(Eigen::AngleAxisd(std::numbers::pi / 6, Vector::UnitZ()));
   std::vector<std::vector<Point>> faces = {{Point(0, 0, 0), Point(40, 0, 0), Point(40, 28, 0)},
@@ -62,14 +62,14 @@ TEST(FloorGrid, StandsParallelToTheRimOfATriangulatedFloor) {
   EXPECT_NEAR(std::max(std::abs(along.x()), std::abs(along.y())), 1, 1e-12);
 }
 
-// Middles lie at 0.25, 0.75, ... from the walls of 4 x 3 m: 0.5 m from them 6 x 4 are left.
+// Middles lie at 0.25, 0.75, ... from the walls of 4 x 3 m: 6 x 4 remain at 0.5 m from them.
 TEST(FloorGrid, KeepsADistanceFromWalls) {
   const Floor floor{{{Point(0, 0, 0), Point(4, 0, 0), Point(4, 3, 0), Point(0, 3, 0)}}, Vector::UnitZ()};
   EXPECT_EQ(floor_grid(floor, 0.8, {0.5, 0.5}).sensors.size(), 6U * 4);
   EXPECT_TRUE(floor_grid(floor, 0.8, {0.5, 1.6}).sensors.empty());
 }
 
-// One walks on the top of a slab, not on its underside; the ceiling of a room is no top of its floor.
+// The floor is the top of a slab, not its underside. The ceiling of a room is not the top of its floor.
 TEST(FloorOf, ASlabIsItsTop) {
   const auto level = [](double height) {
     return std::vector<Point>{Point(0, 0, height), Point(4, 0, height), Point(4, 3, height), Point(0, 3, height)};
@@ -89,7 +89,7 @@ TEST(FloorGrid, LeavesHolesOut) {
   EXPECT_EQ(floor_grid(floor, 0, {1, 0}).sensors.size(), 8U);
 }
 
-// p = 0.2 * 5^log10(d): a fifth of a metre for 1 m, five times that for each factor of ten, 10 m at most.
+// p = 0.2 * 5^log10(d): 0.2 m for 1 m, five times that for each factor of ten, 10 m at most.
 TEST(StandardSpacing, GrowsFivefoldPerFactorOfTen) {
   EXPECT_NEAR(standard_spacing(1, 1), 0.2, 1e-15);
   EXPECT_NEAR(standard_spacing(10, 8), 1, 1e-15);
@@ -107,7 +107,7 @@ Floor rectangle(double x, double y) {
   return {{{Point(0, 0, 0), Point(x, 0, 0), Point(x, y, 0), Point(0, y, 0)}}, Vector::UnitZ()};
 }
 
-// p = 0.855 m: 4 x 7 m less the strip have 5 x 9 cells.
+// p = 0.855 m: 4 x 7 m without the strip have 5 x 9 cells.
 TEST(StandardGrid, CoversARoomOfFiveByEightMetresButForAStrip) {
   const Floor floor = rectangle(5, 8);
   const GridSize size = standard_grid(floor);
@@ -126,8 +126,8 @@ TEST(StandardGrid, LeavesPlacesInNarrowRooms) {
   EXPECT_NEAR(area_of(floor_grid(floor, 0.8, standard_grid(floor))), 0.4 * 2.6, 1e-12);
 }
 
-// Arms of 12 m, 1.5 m wide: p of 12 m is 1.1 m, and the strips of 0.375 m leave a row of 0.75 m, both less by half the
-// distance of the 51 places each way that are looked at, 0.12 m.
+// Arms of 12 m, 1.5 m wide: p of 12 m is 1.1 m. The strips of 0.375 m leave a row of 0.75 m. Both are smaller by half
+// the spacing of the 51 test positions in each direction, 0.12 m.
 TEST(StandardGrid, HasARowInACorridorAroundACorner) {
   const Floor floor{
       {{Point(0, 0, 0), Point(12, 0, 0), Point(12, 1.5, 0), Point(1.5, 1.5, 0), Point(1.5, 12, 0), Point(0, 12, 0)}},
@@ -136,7 +136,7 @@ TEST(StandardGrid, HasARowInACorridorAroundACorner) {
   EXPECT_NEAR(area_of(grid), 0.75 * (11.25 + 10.5), 0.12 * 21.75);
 }
 
-// An L of 8 x 8 m without a quarter has 7 x 7 - 4 x 4 m^2 beyond the strip; cells end up to half of one beside its
+// An L of 8 x 8 m without a quarter has 7 x 7 - 4 x 4 m^2 without the strip. Cells extend up to half of one beyond its
 // inner corner of 4 + 4 m.
 TEST(StandardGrid, CoversAnL) {
   const Floor floor{{{Point(0, 0, 0), Point(8, 0, 0), Point(8, 4, 0), Point(4, 4, 0), Point(4, 8, 0), Point(0, 8, 0)}},

@@ -33,7 +33,7 @@ TEST(ShellsOf, AnyOneTurnedFaceIsFoundAndTheShellStaysClosed) {
     for (PolygonIndex other = 0; other < 6; ++other) EXPECT_EQ(shells.turned[other], other == p);
     EXPECT_EQ(shells.closed_count, 1U);
   }
-  // Most of the area decides: all faces turned are as good as none.
+  // The larger area decides: with all faces inverted, the result is the same as with none.
   Scene all = cube();
   for (PolygonIndex p = 0; p < 6; ++p) all = with_turned(std::move(all), p);
   const Shells shells = shells_of(all);

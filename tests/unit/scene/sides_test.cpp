@@ -21,7 +21,7 @@ Scene empty_scene() {
   return scene;
 }
 
-// Every polygon brings its own vertices, as many exporters write them.
+// Every polygon has its own vertices, a common practice of exporters.
 Scene with_polygon(Scene scene, const std::vector<Point>& points, MaterialIndex material = wall) {
   Polygon polygon;
   for (const Point& point : points) {
@@ -53,7 +53,7 @@ Scene with_cube(Scene scene, const Point& centre, double size, Normals normals) 
   return scene;
 }
 
-// A small square lamp whose front looks down.
+// A small square lamp whose front faces down.
 Scene with_lamp(Scene scene, const Point& centre, double size = 0.1) {
   const double h = size / 2;
   return with_polygon(
@@ -62,7 +62,7 @@ Scene with_lamp(Scene scene, const Point& centre, double size = 0.1) {
       lamp);
 }
 
-// Six far sheets around everything: no side has nothing before it.
+// Six distant sheets around everything, so that every side has something before it.
 Scene among_others(Scene scene) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double at : {-9.0, 9.0}) {
@@ -111,7 +111,7 @@ TEST(KeptSides, ASolidWithoutALampKeepsItsOuterSides) {
   EXPECT_FALSE(automatic(outward).emit_from_back);
 }
 
-// A lamp over an open box: inside there is light, and before the outer sides there is nothing, but for the lamp's own.
+// A lamp over an open box. There is light inside. Nothing is before the outer sides, except the lamp's own.
 TEST(KeptSides, ASideWithNothingBeforeItIsDark) {
   for (const double metres : {1.0, 1000.0}) {
     Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
@@ -141,7 +141,8 @@ TEST(KeptSides, ASolidAroundTheOnlyLampKeepsItsInnerSides) {
   expect_all(inward, 0, 6, front_only);
 }
 
-// A lamp 20 cm above the ceiling lights no room: it is told where it is. One beside a cupboard in the room is not.
+// A note reports a lamp 20 cm above the ceiling, which lights no room, and its position. There is no note for a lamp
+// beside a cupboard in the room.
 TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::inward);
   const double ceiling = bounds(scene).max().z();
@@ -162,7 +163,7 @@ TEST(KeptSides, TellOfALuminaireOutsideOfTheRoom) {
   EXPECT_EQ(told({0, 0, ceiling - 0.1}), "");
 }
 
-// A room with a lamp under the sky: nobody is left to wonder why daylight changes nothing in it.
+// A room with a lamp under the sky: a note explains that daylight has no effect in it.
 TEST(KeptSides, SaysWhereNoDaylightGetsIn) {
   const auto says_so = [](const Scene& scene) {
     return test::has(automatic(scene).notes, DiagnosticCode::sealed_solid);
@@ -202,7 +203,8 @@ TEST(KeptSides, LightGetsThroughSheetsBothSidesOfWhichTakePart) {
   const Scene dark = scene;
   scene.sky = Sky{};
   expect_all(automatic(scene), 0, 6, both_sides);
-  // A lamp inside: of the sides that look out of the solid, with nothing before them, that of the sheet is kept alone.
+  // A lamp inside. Among the sides that face away from the solid, with nothing before them, only that of the sheet is
+  // kept.
   const KeptSides lit = automatic(with_lamp(dark, {0, 0, 0.2}));
   for (std::size_t p = 0; p < 6; ++p) {
     EXPECT_TRUE(lit.front[p]);
@@ -247,7 +249,7 @@ TEST(KeptSides, ATurnedFaceOfASolidKeepsTheSideThatItsNeighboursKeep) {
 }
 
 TEST(KeptSides, ABackThatIsAFaceOfItsOwnIsKeptAndMayBeALamp) {
-  // Two plates, the back of the second is a lamp: it is in the cube that a point behind it is in.
+  // Two plates, and the back of the second is a lamp. It is in the same cube as a point behind it.
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::outward);
   scene = with_polygon(std::move(scene), {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}});
   scene.polygons[6].back_material = lamp;
@@ -270,19 +272,19 @@ TEST(KeptSides, AnOpenOrBranchedSurfaceKeepsEverything) {
   branched = with_cube(std::move(branched), {1, 1, 0}, 1, Normals::outward);
   expect_all(automatic(branched), 0, 12, both_sides);
 
-  // A sheet modelled as two coincident polygons encloses nothing.
+  // A sheet modeled as two coincident polygons encloses nothing.
   Scene fold = with_polygon(empty_scene(), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   fold = with_polygon(std::move(fold), {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 0}});
   expect_all(automatic(fold), 0, 2, both_sides);
 }
 
-// A floor of two triangles from -2 to 2 at this height, whose front looks up.
+// A floor of two triangles from -2 to 2 at this height, whose front faces up.
 Scene with_floor(Scene scene, double height) {
   scene = with_polygon(std::move(scene), {{-2, -2, height}, {2, -2, height}, {2, 2, height}});
   return with_polygon(std::move(scene), {{-2, -2, height}, {2, 2, height}, {-2, 2, height}});
 }
 
-// A unit cube around the origin without the faces that look along +-z, as asked for, among a lamp over it.
+// A unit cube around the origin with a lamp above it. The parameters select the faces that face along +-z.
 Scene lit_tube(bool bottom, bool top) {
   Scene scene = with_cube(with_lamp(empty_scene(), {0, 0, 1.5}), {0, 0, 0}, 1, Normals::outward);
   if (!top) scene.polygons.erase(scene.polygons.begin() + 6);
@@ -295,7 +297,7 @@ TEST(KeptSides, AFaceClosesWhatStandsOnIt) {
   expect_all(kept, 1, 6, front_only);
   ASSERT_EQ(kept.dark_solids.size(), 1U);
   EXPECT_EQ(kept.dark_solids[0].polygons, 5U);
-  // A column is closed at both ends, and so is what lies on its side before a wall.
+  // A column is closed at both ends. So is a tube on its side with a wall at its end.
   const KeptSides column = automatic(with_floor(with_floor(lit_tube(false, false), -0.5), 0.5));
   expect_all(column, 1, 5, front_only);
   const Eigen::Affine3d turned(Eigen::AngleAxisd(1.1, Vector(1, 2, -1).normalized()));
@@ -304,8 +306,9 @@ TEST(KeptSides, AFaceClosesWhatStandsOnIt) {
   expect_all(automatic(on_wall), 1, 6, front_only);
 }
 
-// A room of 4 m with a lamp and a wall across it, 0.2 m thick, as two faces with a doorway each and the three faces of
-// its reveal: it ends at the floor on both sides of the door, at the ceiling and at two walls. `gap` m over the floor.
+// A room of 4 m with a lamp and a wall across it, 0.2 m thick: two faces with a doorway each, and the three faces of
+// its reveal. It ends at the floor on both sides of the door, at the ceiling and at two walls. It is `gap` m above the
+// floor.
 Scene room_with_doorway(double gap) {
   Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 4, Normals::inward), {1, 0, 1.5});
   const double low = -2 + gap;
@@ -360,7 +363,7 @@ TEST(KeptSides, TouchingAtACornerDoesNotJoinSolids) {
   expect_all(kept, 6, 12, back_only);
 }
 
-// A room with the lamp, and a dark one in which a box stands and a sheet lies; the sheet ends at a wall.
+// A lit room with the lamp, and a dark one that contains a box and a sheet. The sheet ends at a wall.
 Scene lit_and_dark_room() {
   Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward), {0, 0, 0.5});
   scene = with_cube(std::move(scene), {5, 0, 0}, 2, Normals::inward);
@@ -372,7 +375,7 @@ TEST(KeptSides, WhatStandsInADarkRoomIsLeftOutWithIt) {
   const KeptSides kept = automatic(lit_and_dark_room());
   expect_all(kept, 0, 6, front_only);
   expect_all(kept, 7, 20, no_side);
-  // The second room's inner sides and the box's outer ones, both of the box's inner ones and of the sheet.
+  // The second room's inner sides, both sides of the box's faces and both sides of the sheet.
   EXPECT_EQ(kept.unreached, 6U + 12U + 2U);
   // The outer sides of both rooms.
   EXPECT_EQ(kept.turned_away, 6U + 6U);
@@ -394,8 +397,8 @@ TEST(KeptSides, SidesInTheDarkAreKeptWhenAskedFor) {
   expect_all(turned_away, 13, 20, no_side);
 }
 
-// Beside the lit room: a sheet in the open, one on a wall from outside, a rug on the floor, and ground that the room
-// stands on and reaches into.
+// Beside the lit room: a sheet outdoors, one on the outside of a wall, a rug on the floor, and ground under the room
+// that extends into it.
 TEST(KeptSides, OutsideOfTheLitRoomItIsDark) {
   Scene scene = with_lamp(with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward), {0, 0, 0.5});
   scene = with_polygon(std::move(scene), {{3, 0, 0}, {4, 0, 0}, {4, 1, 0}});
@@ -409,7 +412,7 @@ TEST(KeptSides, OutsideOfTheLitRoomItIsDark) {
   EXPECT_EQ(sides_of(kept, 10), both_sides);
 }
 
-// A sheet that sticks through the wall of the dark room is lit by a lamp outside.
+// A lamp outside lights a sheet that extends through the wall of the dark room.
 TEST(KeptSides, WhatReachesOutOfADarkRoomStays) {
   Scene scene = lit_and_dark_room();
   scene = with_polygon(std::move(scene), {{4.5, 0.9, 0}, {4.9, 0.9, 0}, {4.9, 1.4, 0}, {4.5, 1.4, 0}});
@@ -417,7 +420,7 @@ TEST(KeptSides, WhatReachesOutOfADarkRoomStays) {
   EXPECT_EQ(sides_of(automatic(with_lamp(std::move(scene), {5, 5, 0})), 20), both_sides);
 }
 
-// A dark solid with the outline of an E, 3 m high. The corners and the middle of a floor lie within its arms; between
+// A dark solid with the outline of an E, 3 m high. The corners and the middle of a floor lie within its arms. Between
 // the arms a lamp shines on it.
 TEST(KeptSides, WhatLiesWithinADarkSolidInPartsStays) {
   const std::vector<Point> outline = {{0, 0, 0}, {9, 0, 0}, {9, 6, 0}, {8, 6, 0}, {8, 1, 0}, {7, 1, 0},
@@ -440,7 +443,7 @@ TEST(KeptSides, WhatLiesWithinADarkSolidInPartsStays) {
   EXPECT_EQ(sides_of(kept, 14), both_sides);
 }
 
-// A lamp that sticks through the wall of a room lights both sides of it.
+// A lamp through the wall of a room lights both sides of it.
 TEST(KeptSides, ALampThroughAWallLightsBothSides) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward);
   scene = with_polygon(std::move(scene), {{0.2, 0, 0}, {1.4, 0, 0}, {1.4, 0.1, 0}, {0.2, 0.1, 0}}, lamp);
@@ -455,7 +458,7 @@ TEST(KeptSides, WithoutALampNothingIsLeftOutButTheInsides) {
   EXPECT_EQ(sides_of(kept, 6), both_sides);
 }
 
-// A concave lamp whose centroid lies outside of it, around a pillar: its own inside counts, not its centroid's.
+// A concave lamp around a pillar, with its centroid outside of it. A point inside the lamp counts, not its centroid.
 TEST(KeptSides, AConcaveLampIsLookedForWhereItIs) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 1, Normals::outward);
   // A U around the cube, in the plane z = 0.1, front down.
@@ -467,8 +470,7 @@ TEST(KeptSides, AConcaveLampIsLookedForWhereItIs) {
   expect_all(automatic(among_others(std::move(scene))), 0, 6, front_only);
 }
 
-// Numbering and position carry no meaning: the same sides are kept after the polygons are shuffled and the model is
-// turned and moved.
+// The same sides are kept after the polygons are shuffled and the model is rotated and moved.
 TEST(KeptSides, DoNotDependOnOrderOrPosition) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 4, Normals::outward);
   scene = with_cube(std::move(scene), {0, 0, -1}, 1, Normals::outward);
@@ -501,7 +503,7 @@ TEST(KeptSides, AThinSlabNextToALampStaysOutside) {
   expect_all(kept, 0, 12, front_only);
 }
 
-// Nested rooms: the lamp is inside of both shells, and no light gets out of the inner one.
+// Nested rooms: the lamp is inside both shells, and no light leaves the inner one.
 TEST(KeptSides, ALampInTheInnermostShellIsHeldByAll) {
   Scene scene = with_cube(empty_scene(), {0, 0, 0}, 2, Normals::inward);
   scene = with_cube(std::move(scene), {0, 0, 0}, 3, Normals::outward);

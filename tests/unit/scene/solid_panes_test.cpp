@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// A closed box of glass, 1.2 x 1 m, so thick, with its fronts outward.
+// A closed box of glass, 1.2 x 1 m, of this thickness, with its fronts outward.
 Scene glass_box(double thickness) {
   Scene scene = empty_scene({grey(0.05)});
   scene.materials[0].transmittance = Spectrum::Constant(1, 0.8);
@@ -50,14 +50,14 @@ TEST(SolidPanes, AreThinOfOneMaterialAndFaceOutward) {
       EXPECT_EQ(found.polygons[p].material, scene.polygons[p].material);
   };
   expect_as_it_was(glass_box(0.06));
-  // An aquarium: its faces look at each other.
+  // An aquarium: its faces see each other.
   Scene inward = empty_scene({glass_box(0.01).materials[0]});
   expect_as_it_was(with_box(std::move(inward), Point(0, 0, 0), Point(1.2, 1, 0.01), true));
   Scene two_materials = glass_box(0.01);
   two_materials.materials.push_back(two_materials.materials[0]);
   two_materials.polygons[1].material = 1;
   expect_as_it_was(two_materials);
-  // Two panes of double glazing, one face each, that face the same way; and two beside each other.
+  // Double glazing of two panes, one face each, with the same orientation; and two panes side by side.
   Scene glazing = empty_scene({glass_box(0.01).materials[0]});
   const Quad pane{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
   for (const Vector& at : {Vector(0, 0, 0), Vector(0, 0, 0.016), Vector(1, 0, 0.001)}) {
@@ -69,7 +69,8 @@ TEST(SolidPanes, AreThinOfOneMaterialAndFaceOutward) {
   expect_as_it_was(cube_room(0.5, 1));
 }
 
-// The two sides of a pane, cut along different diagonals, or one of them into strips: light passes once at each place.
+// The two sides of a pane are cut along different diagonals, or one of them into strips. Light passes once at each
+// point.
 TEST(SolidPanes, CountOnceHoweverTheirSidesAreCut) {
   const auto at = [](double x, double y, double z) { return Point(1.2 * x, y, 0.02 * z); };
   const auto strips = [&](int count) {
@@ -92,7 +93,7 @@ TEST(SolidPanes, CountOnceHoweverTheirSidesAreCut) {
       EXPECT_EQ(found.polygons[p].back_material.has_value(), p < 2) << p;
     }
   }
-  // Narrow double glazing, whose sheets are cut differently: each of them counts once.
+  // Narrow double glazing with differently cut sheets: each of them counts once.
   Scene double_glazing = strips(3);
   for (const Polygon& polygon : strips(5).polygons) {
     Polygon moved_polygon = polygon;
@@ -106,14 +107,14 @@ TEST(SolidPanes, CountOnceHoweverTheirSidesAreCut) {
   int counted_once = 0;
   for (const Polygon& polygon : two.polygons) counted_once += polygon.back_material.has_value();
   EXPECT_EQ(counted_once, 4) << "the two halves of the first side of each sheet";
-  // A second side with a hole of a tenth of its area is none.
+  // A second side with a hole of a tenth of its area does not count.
   Scene open = strips(10);
   open.polygons.resize(open.polygons.size() - 2);
   const std::size_t materials = open.materials.size();
   EXPECT_EQ(with_solid_panes_as_one(std::move(open)).materials.size(), materials);
 }
 
-// A handle of the same glass on the back, 3 mm deep, and a second pane beside it that lacks its back.
+// A handle of the same glass on the back, 3 mm deep, and beside it a second pane without its back.
 TEST(SolidPanes, CountOnceBesideSmallerPartsAndOpenPanes) {
   Scene scene = glass_box(0.01);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0.004), Point(0.52, 0.52, 0.0075), false);
@@ -124,7 +125,7 @@ TEST(SolidPanes, CountOnceBesideSmallerPartsAndOpenPanes) {
   EXPECT_EQ(through(found, 12)[0], 0.8) << "the open one";
 }
 
-// The second side has no spectra of its own left, which would replace its transmittance later.
+// The second side has no spectra of its own, which would later replace its transmittance.
 TEST(SolidPanes, LetSampledLightThroughOnce) {
   Scene scene = glass_box(0.01);
   scene.materials[0].spectra.transmittance = std::make_shared<const SampledSpectrum>();
@@ -134,7 +135,8 @@ TEST(SolidPanes, LetSampledLightThroughOnce) {
 }
 
 TEST(SolidPanes, OfSeveralAreTakenInPairs) {
-  // Three sheets of 6 mm, 10 mm apart: those that face away from each other across 6 mm, not across the gaps.
+  // Three sheets of 6 mm, 10 mm apart. Pairs are the faces across 6 mm that face away from each other, not those across
+  // gaps.
   Scene scene = empty_scene({glass_box(0.01).materials[0]});
   for (const double z : {0.0, 0.016, 0.032})
     scene = with_box(std::move(scene), Point(0, 0, z), Point(1, 1, z + 0.006), false);
@@ -145,7 +147,7 @@ TEST(SolidPanes, OfSeveralAreTakenInPairs) {
   EXPECT_NEAR(product, 0.8 * 0.8 * 0.8, 1e-15);
 }
 
-// Double glazing of two sheets of 6 mm, whichever of their faces come first: the nearest are pairs.
+// Double glazing of two sheets of 6 mm, for any order of faces: the nearest ones are pairs.
 TEST(SolidPanes, AreThoseWithTheNearestFaces) {
   const auto face = [](double z, bool up) {
     const Quad quad{Point(0, 0, z), Point(1, 0, z), Point(1, 1, z), Point(0, 1, z)};
@@ -162,7 +164,7 @@ TEST(SolidPanes, AreThoseWithTheNearestFaces) {
   } while (std::next_permutation(sheets.begin(), sheets.end()));
 }
 
-// Two sheets without thickness, 1 cm apart, of which both sides are drawn: each is one already.
+// Two sheets without thickness, 1 cm apart, with both sides drawn: each is already complete.
 TEST(SolidPanes, AreNotMadeOfSheetsWithTwoSides) {
   Scene scene = empty_scene({glass_box(0.01).materials[0]});
   for (const double z : {0.0, 0.01}) {

@@ -33,7 +33,7 @@ Eigen::Vector3d xyz_of_lamp(const Scene& scene) {
   return xyz_of(scene.materials[1].exitance / std::numbers::pi, bands_of(scene));
 }
 
-// Light is spread inside of bands as that of the only lamp: sums over bands are those over wavelengths.
+// Light within bands has the spectrum of the only lamp: sums over bands are those over wavelengths.
 TEST(WavelengthBands, KeepTheColourOfOneLampHoweverFewTheyAre) {
   const Eigen::Vector3d a = xyz_of_cells(in_cells(*planckian_spectrum(2700), Beyond::zero));
   for (const Eigen::Index number : {1, 3, 16, 77}) {
@@ -46,7 +46,7 @@ TEST(WavelengthBands, KeepTheColourOfOneLampHoweverFewTheyAre) {
   }
 }
 
-// Several lights are each off in colour, but none in luminance.
+// With several lights the color of each is approximate, but the luminance is exact.
 TEST(WavelengthBands, KeepTheLuminanceOfEachLight) {
   Scene scene = with_kelvin(room(rgb(0.5, 0.5, 0.5)), 2700);
   scene.sky = Sky{.horizontal_irradiance = rgb(2, 3, 4)};
@@ -56,8 +56,8 @@ TEST(WavelengthBands, KeepTheLuminanceOfEachLight) {
   EXPECT_NEAR(xyz_of_lamp(scene).y(), 1790, 1e-9);
 }
 
-// The smooth spectrum of a colour has this colour under D65, for which it was made: so has one of linear RGB reflected
-// once, with fine bands. By bands of a third of a nm, which divide cells, as by others.
+// The smooth spectrum of a color has this color under D65 by construction. One reflection of linear RGB in fine bands
+// gives it, too. Bands of a third of a nm, which divide cells, give the same.
 TEST(WavelengthBands, KeepColoursOfRgbUnderTheirWhite) {
   const Spectrum colour = rgb(0.6, 0.1, 0.3);
   for (const Eigen::Index number : {400, 320}) {
@@ -87,7 +87,7 @@ TEST(WavelengthBands, KeepGreyEvenAndSharesWithinOne) {
 }
 
 TEST(WavelengthBands, LeaveOutWhatLiesBeyondThem) {
-  // Luminances add up over bands that meet at 550 nm; of what lies beyond 700 nm no band has any.
+  // Luminances add up over bands that meet at 550 nm. No band includes light above 700 nm.
   const auto lamp_between = [](double from, double to) {
     return xyz_of_lamp(in_wavelength_bands(with_kelvin(room(rgb(0.5, 0.5, 0.5)), 2700), {from, to})).y();
   };
@@ -119,7 +119,7 @@ TEST(Rgb, OfSpectraIsTheirColourAndLuminance) {
   EXPECT_GT(light[0], 2 * light[2]);
 }
 
-// The same sums over all bands before and after, of light and of what is left of it after two reflections.
+// The same sums over all bands before and after, of light and of its rest after two reflections.
 TEST(JoinedBands, KeepTheColourOfAllLight) {
   Scene scene = with_kelvin(room(rgb(0.5, 0.5, 0.5)), 2700);
   scene.materials[0].spectra.reflectance = sampled({500, 600}, {0.2, 0.8});
@@ -152,7 +152,7 @@ TEST(JoinedBands, WithoutLightGoWithTheirNeighbours) {
 }
 
 TEST(JoinedBands, AreNotJoinedByALightThatIsDarkInBoth) {
-  // A lamp of 450 to 550 nm alone, a warm and a cold sky: in the bands beyond it these two tell all apart.
+  // A lamp of only 450 to 550 nm, a warm and a cold sky. The two skies distinguish all other bands.
   Scene scene = room(rgb(0.5, 0.5, 0.5));
   scene.materials[1].spectra.light = sampled({449, 450, 550, 551}, {0, 1, 1, 0});
   scene.sky = Sky{.horizontal_irradiance = rgb(1, 1, 1), .spectrum = planckian_spectrum(2700)};

@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-// A pane of three bands, clear from the front as stated, with a dark back.
+// A pane of three bands with this transmittance from the front, and a dark back.
 Scene coloured_pane(const Spectrum& transmittance) {
   Scene scene = empty_scene({{"glass", rgb(0, 0, 0), rgb(0, 0, 0)}, {"wall", rgb(0.5, 0.5, 0.5), rgb(0, 0, 0)}});
   scene.materials[0].transmittance = transmittance;
@@ -36,7 +36,8 @@ TEST(SpecularFace, TakesHalfOfEachSide) {
 }
 
 TEST(SpecularFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
-  // 2 int mu w(mu) dmu = 1 by Simpson's rule, which has the fourth order: the rest is that of the 1,024 steps.
+  // 2 int mu w(mu) dmu = 1 by Simpson's rule, which has the fourth order. The remaining error is that of the 1,024
+  // steps.
   const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int intervals = 4096;
   double sum = 0;
@@ -51,8 +52,8 @@ TEST(SpecularFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
 }
 
 TEST(SpecularFace, SamplesDirectionsAsItHoldsLight) {
-  // The mean of any f over these directions is 2 int f mu w dmu: of f = 1 / w, where all is by the cosine, 1; of f = mu
-  // / w it is 2 / 3.
+  // The mean of any f over these directions is 2 int f mu w dmu. It is 1 for f = 1 / w, the case of cosine weights, and
+  // 2 / 3 for f = mu / w.
   const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int samples = 100000;
   double one = 0;

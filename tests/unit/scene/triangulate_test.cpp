@@ -57,7 +57,7 @@ std::map<std::string, Outline> outlines() {
           {"star", star(7)}};
 }
 
-// Turned and moved somewhere in space, far from the origin by a few sizes.
+// Rotated and moved in space, a few sizes from the origin.
 Outline moved(const Outline& outline) {
   const Eigen::AngleAxisd rotation(0.7, Vector(1, -2, 0.5).normalized());
   Outline result;
@@ -65,10 +65,10 @@ Outline moved(const Outline& outline) {
   return result;
 }
 
-// A polygon with n corners gives n - 2 triangles; each turns like the polygon (or has no area), so that equal areas
-// mean a cover without gaps and overlaps.
+// A polygon with n corners gives n - 2 triangles. Each has the polygon's orientation or no area, so equal areas imply a
+// cover without gaps and overlaps.
 TEST(Triangulate, CoversThePolygonWithTrianglesOfItsOrientation) {
-  // Areas of about 10 are sums of products of coordinates up to 20: 1e-13 is some hundred roundings.
+  // Areas of about 10 are sums of products of coordinates up to 20: 1e-13 is a few hundred roundings.
   constexpr double rounding = 1e-13 * 20 * 20;
   for (const auto& [name, flat_outline] : outlines()) {
     SCOPED_TRACE(name);

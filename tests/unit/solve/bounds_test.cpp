@@ -6,7 +6,7 @@
 namespace patchlight::bounds_test {
 namespace {
 
-// Two patches that see nothing but each other; form factors that are not said to be reciprocal. Counts what it does.
+// Two patches that see only each other, with form factors that are not declared reciprocal. Counts its applications.
 class Pair : public TransportOperator {
  public:
   PatchIndex size() const override { return 2; }
@@ -23,8 +23,8 @@ RadiosityProblem reflecting(double reflectance) {
   return {{Field::Constant(2, 1, reflectance), {}, {}}, Field::Constant(2, 1, 1), Eigen::VectorXd::Ones(2)};
 }
 
-// The n-th bounce between them is rho^n: v is found as soon as that is below 3/4, which ln(3/4) / ln(rho) applications
-// tell; the last of them is what g = v - K v lacks to 1.
+// The n-th bounce between them is rho^n. The weights v are found when it is below 3/4, after ln(3/4) / ln(rho)
+// applications. The last bounce is the difference of g = v - K v from 1.
 TEST(PatchWeights, AreFoundWhileTheBouncesFallInTime) {
   for (const double reflectance : {0.3, 0.9, 0.98}) {
     const Pair pair;
@@ -33,13 +33,13 @@ TEST(PatchWeights, AreFoundWhileTheBouncesFallInTime) {
     EXPECT_EQ(pair.applications, std::ceil(std::log(0.75) / std::log(reflectance)));
     EXPECT_EQ(weights->applications, pair.applications);
     EXPECT_GT(weights->g.minCoeff(), 0);
-    // g is v - K v of what v it is.
+    // g is v - K v for this v.
     EXPECT_LT((weights->v * (1 - reflectance) - weights->g).abs().maxCoeff(), 1e-12);
   }
 }
 
-// With .998 three quarters are left after 143 bounces, which is more than is tried: a few of them tell, and bound the
-// errors as well as all would. Where nothing is lost nothing bounds them.
+// With 0.998 three quarters remain after 143 bounces, more than the limit. A few bounces show that, and bound the
+// errors as well as all of them. Without losses there is no bound.
 TEST(PatchWeights, AreGivenUpAsSoonAsTheyWillNotBeFound) {
   const Pair slow;
   const auto weights = patch_weights(slow, reflecting(0.998));
@@ -51,7 +51,7 @@ TEST(PatchWeights, AreGivenUpAsSoonAsTheyWillNotBeFound) {
   EXPECT_LE(endless.applications, 6);
 }
 
-// Two lamps that keep all of their light; or one of them absorbs some, or nothing shines.
+// Two lamps that keep all of their light. In the other cases one absorbs some of it, or nothing shines.
 TEST(TrappedLight, IsThatOfLampsBetweenPatchesThatLoseNothing) {
   const Pair pair;
   EXPECT_FALSE(trapped_light(pair, reflecting(1)).empty());

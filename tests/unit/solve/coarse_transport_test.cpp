@@ -7,8 +7,8 @@
 namespace patchlight::coarse_transport_test {
 namespace {
 
-// Patches of an integrating sphere with a hole: each sends the share `arrives` of its light evenly to all area,
-// F_ij = arrives A_j / A.
+// Patches of an integrating sphere with a hole: each sends the fraction `arrives` of its light evenly to all area, F_ij
+// = arrives A_j / A.
 struct Sphere {
   RadiosityProblem problem;
   double arrives;
@@ -19,7 +19,7 @@ struct Sphere {
   }
 };
 
-// Two bands, areas and reflectances of all kinds.
+// Two bands, various areas and reflectances.
 Sphere sphere(Eigen::Index n, double arrives) {
   Sphere sphere{{{Field(n, 2)}, Field::Zero(n, 2), Eigen::VectorXd(n)}, arrives};
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -36,8 +36,8 @@ Field unshot_in(const Sphere& sphere) {
       n, 2, [](Eigen::Index i, Eigen::Index band) { return std::abs(std::sin(static_cast<double>(i + 3 * band))); });
 }
 
-// Where light spreads evenly one row tells all: with the geometric series of all reflections the irradiance is
-// arrives sum A dB / A / (1 - arrives mean rho), to the rounding of rows in single precision.
+// Where light spreads evenly one row determines everything. With the geometric series of all reflections the irradiance
+// is arrives sum A dB / A / (1 - arrives mean rho), to the rounding of rows in single precision.
 TEST(CoarseTransport, IsExactInAnIntegratingSphereAfterOneRow) {
   for (const Eigen::Index n : {7, 64, 300}) {
     for (const double arrives : {1.0, 0.6}) {
@@ -62,7 +62,7 @@ TEST(CoarseTransport, IsExactInAnIntegratingSphereAfterOneRow) {
   }
 }
 
-// Whatever errors rows have, light does not grow: what arrives of the flux U is at most U / (1 - rho_max).
+// For any errors of rows, light does not grow: at most U / (1 - rho_max) of the flux U arrives.
 TEST(CoarseTransport, MakesNoLightFromRowsThatAreTooLarge) {
   const Sphere in = sphere(200, 1.4);
   CoarseTransport coarse(in.problem);
@@ -79,7 +79,7 @@ TEST(CoarseTransport, MakesNoLightFromRowsThatAreTooLarge) {
   }
 }
 
-// No light is ever lost: there is no such irradiance, and none is shown.
+// No light is ever lost, so there is no such irradiance, and the display has none.
 TEST(CoarseTransport, ShowsNothingWhereLightIsNeverLost) {
   Sphere in = sphere(100, 1);
   in.problem.scattering.reflectance.col(0).setOnes();
@@ -92,8 +92,8 @@ TEST(CoarseTransport, ShowsNothingWhereLightIsNeverLost) {
   EXPECT_TRUE((ambient.col(1) > 0).all());
 }
 
-// 128 patches are 64 groups of two. With equal areas and flux that grows with the number the first 64 shots are those
-// of the odd patches, from the last on; then the brightest of all follows.
+// 128 patches are 64 groups of two. With equal areas and flux that grows with the number, the odd patches shoot first,
+// from the last to the first. Then the brightest of all follows.
 TEST(CoarseTransport, LetsEachGroupShootOnceAndThenTheBrightest) {
   Sphere in = sphere(128, 1);
   in.problem.area.setOnes();
@@ -108,7 +108,7 @@ TEST(CoarseTransport, LetsEachGroupShootOnceAndThenTheBrightest) {
     coarse.learn(source, flash, in.arriving(source, flash));
   }
   EXPECT_EQ(coarse.next_source(waiting), 127);
-  // What is shot too much counts as well.
+  // Excess flux counts as well.
   waiting.row(5).setConstant(-1000);
   EXPECT_EQ(coarse.next_source(waiting), 5);
   // Groups without flux do not shoot.

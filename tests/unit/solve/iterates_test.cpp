@@ -59,7 +59,7 @@ TEST_P(Iterates, GoWithTheHistoryFromTheLampsToTheSolution) {
   ASSERT_TRUE(run.solution.converged);
   ASSERT_EQ(run.irradiance.size(), run.solution.history.size());
   EXPECT_TRUE((run.irradiance.front() == 0).all());
-  // The last one is as near to the solution as the tolerance says; the norm of 4 patches is at most 3 times a value.
+  // The last one is within the tolerance of the solution. The norm of 4 patches is at most 3 times a value.
   const double largest = run.solution.irradiance.maxCoeff();
   EXPECT_LE((run.irradiance.back() - run.solution.irradiance).abs().maxCoeff(), 3e-9 * largest);
 }
@@ -75,7 +75,7 @@ TEST_P(Iterates, DirectIrradianceComesFromTheLampsAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Iterates, testing::ValuesIn(all_solvers()), solver_name);
 
-// Light only ever arrives: from a dark start every iterate lies between the one before and the solution.
+// Light only increases: from a dark start every iterate lies between the previous one and the solution.
 class GrowingIterates : public testing::TestWithParam<Solver> {};
 
 TEST_P(GrowingIterates, GrowTowardsTheSolution) {

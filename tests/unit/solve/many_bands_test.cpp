@@ -1,4 +1,4 @@
-// Bounds of solutions in many bands, which have weights in common.
+// Bounds of solutions in many bands, with common weights.
 #include "patchlight/solve/solve.h"
 
 #include "support/direct_solution.h"
@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr Eigen::Index bands = 8;
 
-// A lamp, and paints of all colours.
+// A lamp, and paints of various colors.
 RadiosityProblem coloured(const Room& room, double highest) {
   const Eigen::Index n = room.problem.area.size();
   RadiosityProblem problem{{Field(n, bands)}, Field::Zero(n, bands), room.problem.area};
@@ -43,7 +43,7 @@ TEST(ManyBands, HaveBoundsThatHold) {
   }
 }
 
-// Where every patch reflects all light in some band no single weights bound all bands, and each has its own.
+// If every patch reflects all light in some band, no single weights bound all bands. Each band has its own.
 TEST(ManyBands, HaveBoundsWhereAllTogetherReflectEverything) {
   const Room room = made_up(100, 0.8);
   RadiosityProblem problem = coloured(room, 0.5);

@@ -1,4 +1,4 @@
-// What single methods promise.
+// Guarantees of single methods.
 #include "patchlight/solve/solve.h"
 
 #include "base/vectors.h"
@@ -15,8 +15,8 @@ namespace {
 
 using namespace test;
 
-// Jacobi's residuals fall as ||K||_A < 1, those of GMRES as it minimises them over ever more directions, restarts
-// included.
+// Jacobi's residuals decrease because ||K||_A < 1. Those of GMRES decrease because it minimizes them over more and more
+// directions, with and without restarts.
 TEST(Residuals, FallForJacobiAndGmres) {
   const Room room = made_up(100, 0.9);
   for (const auto& [solver, restart] : {std::pair(Solver::jacobi, 1), {Solver::gmres, 30}, {Solver::gmres, 2}}) {
@@ -28,8 +28,8 @@ TEST(Residuals, FallForJacobiAndGmres) {
   }
 }
 
-// Where no bound is known iterates are made only for an observer that asks: their residuals are those in the history,
-// restarts included, and asking changes nothing.
+// Without a known bound, iterates are computed only for an observer that requests them. Their residuals are those in
+// the history, including restarts. The request changes nothing.
 TEST(Gmres, MakesTheIteratesWhoseResidualsItTells) {
   const Room room = made_up(100, 0.9);
   const double none = std::numeric_limits<double>::infinity();
@@ -64,7 +64,7 @@ TEST(Jacobi, IterationKAddsBounceK) {
   for (int k = 1; k <= 4; ++k) {
     bounce = room.problem.scattering.reflectance * room.transport->apply(bounce);
     sum += bounce;
-    // Iterate k - 1 is measured in iteration k - 1 and handed out one bounce on.
+    // Iterate k - 1 is measured in iteration k - 1, and passed on after one more bounce.
     const Solution solution = solve(*room.transport, room.problem,
                                     {.solver = Solver::jacobi, .relative_error = 1e-15, .max_iterations = k - 1});
     EXPECT_LT((solution.radiosity - sum).abs().maxCoeff(), 1e-14 * sum.maxCoeff());
@@ -72,8 +72,8 @@ TEST(Jacobi, IterationKAddsBounceK) {
 }
 
 TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
-  // For rho near 1 the slowest mode of both is nearly constant; Gauss-Seidel reduces it about twice per sweep (Young
-  // 1971 has exactly twice for consistently ordered matrices, which this is not).
+  // For rho near 1 the slowest mode of both is nearly constant. Gauss-Seidel reduces it about twice per sweep. Young
+  // 1971 has exactly twice for consistently ordered matrices, but this one is not.
   const Room room = made_up(200, 0.9);
   const auto iterations = [&](Solver solver) {
     return static_cast<double>(
@@ -85,7 +85,7 @@ TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
 }
 
 TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
-  // Early on, the display with the ambient term is closer to the answer than without.
+  // Early on, the display with the ambient term is closer to the solution than without.
   const Room room = made_up(100, 0.8);
   const Field exact = direct_solution(*room.transport, room.problem);
   const Solution early = solve(*room.transport, room.problem,
@@ -97,7 +97,7 @@ TEST(ProgressiveRefinement, AmbientTermEstimatesWhatIsUnderWay) {
 }
 
 TEST(ProgressiveRefinement, StopsAfterSoManyRows) {
-  // Of 100 rows two are those of the lamps, which always shoot.
+  // Two of 100 rows belong to the lamps, which always shoot.
   const Room room = made_up(100, 0.8);
   for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
     const auto stopped = [&](double max_rows, int max_iterations) {

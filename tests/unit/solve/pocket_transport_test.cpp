@@ -16,7 +16,7 @@
 namespace patchlight::pocket_transport_test {
 namespace {
 
-// A room of grey patches, a pocket of white ones that a thousandth of their light leaves, and closed white ones.
+// A room of gray patches, a pocket of white ones that a thousandth of their light leaves, and closed white ones.
 constexpr PatchIndex in_room = 180;
 constexpr PatchIndex in_pocket = 12;
 constexpr PatchIndex in_closed = 3;
@@ -37,7 +37,7 @@ RayRows of(const Rows& rows) {
   return made;
 }
 
-// Each patch of the room sees sixteen others, and some a patch of the pocket.
+// Each patch of the room sees sixteen others, and some see a patch of the pocket.
 Rows rows_of_building() {
   Rows rows(patches);
   constexpr std::uint32_t seen = 16;
@@ -50,7 +50,7 @@ Rows rows_of_building() {
   }
   for (PatchIndex k = 0; k < in_pocket; ++k) {
     const PatchIndex i = in_room + k;
-    // Along the pocket, to and fro.
+    // Along the pocket, back and forth.
     rows[i].push_back({in_room + (k + 1) % in_pocket, static_cast<float>((1 - leak) / 2)});
     rows[i].push_back({in_room + (k + in_pocket - 1) % in_pocket, static_cast<float>((1 - leak) / 2)});
     rows[i].push_back({k, static_cast<float>(leak)});
@@ -65,13 +65,13 @@ Rows rows_of_building() {
 
 RayTransport building() { return RayTransport({of(rows_of_building()), of(rows_of_building())}); }
 
-// Of so many bands; a tenth of the room is lit.
+// A problem of this many bands, with light on a tenth of the room.
 RadiosityProblem lit(Eigen::Index bands) {
   RadiosityProblem problem{
       {Field::Constant(patches, bands, 1)}, Field::Zero(patches, bands), Eigen::VectorXd::LinSpaced(patches, 1, 2)};
   for (Eigen::Index band = 0; band < bands; ++band) {
     problem.scattering.reflectance.col(band).head(in_room) = 0.3 + 0.1 * static_cast<double>(band);
-    // White in the first band alone.
+    // White only in the first band.
     problem.scattering.reflectance.col(band).segment(in_room, in_pocket) = 1 / (1.0 + static_cast<double>(band));
     problem.exitance.col(band).head(in_room / 10) = 1 + 0.2 * static_cast<double>(band * band);
   }
@@ -84,7 +84,7 @@ Eigen::VectorXd highest_of(const RadiosityProblem& problem) {
 
 RaysWithPockets with_its_pockets(const RadiosityProblem& problem) { return {building(), highest_of(problem)}; }
 
-// B = (I - R F)^-1 E without the closed patches, which light does not get to.
+// B = (I - R F)^-1 E without the closed patches, which no light reaches.
 Field by_elimination(const TransportOperator& transport, const RadiosityProblem& problem) {
   const Eigen::Index reached = in_room + in_pocket;
   const Eigen::MatrixXd F =
@@ -117,8 +117,8 @@ TEST(Pockets, AreNoneOfARoomThatIsWhiteAltogether) {
   EXPECT_EQ(pockets_of(building(), Eigen::VectorXd::Constant(patches, 0.5)), nullptr);
 }
 
-// Light takes some thousand bounces to get out of the pocket. With these followed apart the bound on every patch is
-// known, and holds, in as many bands as there are; for a loose solution it is not far off.
+// Light takes thousands of bounces to leave the pocket. If these are followed separately, every patch has a valid
+// bound, for any number of bands. For a loose solution the bound is close to the error.
 TEST(PocketTransport, GivesTheSolutionWithABoundThatHolds) {
   for (const Eigen::Index bands : {1, 2, 5}) {
     const RadiosityProblem problem = lit(bands);
@@ -132,7 +132,7 @@ TEST(PocketTransport, GivesTheSolutionWithABoundThatHolds) {
         ASSERT_TRUE(found.converged) << name_of(solver);
         ASSERT_EQ(found.error.rows(), exact.rows()) << name_of(solver);
         const Field off = (found.radiosity - exact).abs();
-        // What is followed in pockets is so to a hundredth of the tolerance.
+        // Light in pockets is followed to a hundredth of the tolerance.
         const double followed = 0.01 * tolerance * exact.maxCoeff();
         EXPECT_LE((off - found.error).maxCoeff(), followed) << name_of(solver);
         EXPECT_LE(found.error.maxCoeff(), tolerance * 30 * exact.maxCoeff()) << name_of(solver);
@@ -147,13 +147,13 @@ TEST(PocketTransport, GivesTheSolutionWithABoundThatHolds) {
   }
 }
 
-// Without that the bounces hardly fall, and nothing bounds the error.
+// Without pockets the bounces hardly decrease, and nothing bounds the error.
 TEST(PocketTransport, IsWhatTheBoundRestsOn) {
   const RadiosityProblem problem = lit(1);
   EXPECT_EQ(solve(building(), problem, {.solver = Solver::gmres, .relative_error = 1e-5}).error.size(), 0);
 }
 
-// A lamp within the pocket, and light from no patch that arrives there.
+// A lamp within the pocket, and light that arrives there from no patch.
 TEST(PocketTransport, TakesWhatStartsInThePocket) {
   RadiosityProblem problem = lit(1);
   problem.exitance(in_room + 3, 0) = 0.5;
@@ -173,7 +173,7 @@ TEST(PocketTransport, TakesWhatStartsInThePocket) {
       << "H = F B + H_direct";
 }
 
-// Light on closed patches is trapped where these reflect all of it; else other pockets are followed all the same.
+// Light on closed patches is trapped if these reflect all of it. Otherwise the remaining pockets are followed anyway.
 TEST(PocketTransport, SaysWhatIsTrappedInClosedOnes) {
   RadiosityProblem problem = lit(1);
   problem.exitance(patches - 1, 0) = 1;
@@ -183,15 +183,15 @@ TEST(PocketTransport, SaysWhatIsTrappedInClosedOnes) {
   const Solution found = solve(with_its_pockets(problem), absorbing, {.solver = Solver::gmres, .relative_error = 1e-6});
   EXPECT_TRUE(found.trapped.empty());
   EXPECT_TRUE(found.converged);
-  // 1 + rho/2 + ... of three patches that see the two others each.
+  // 1 + rho/2 + ... of three patches, each of which sees the two others.
   const double rho = 0.5;
   const double once = 1 / (1 - rho * rho / 2 / (1 - rho / 2));
   EXPECT_NEAR(found.radiosity(patches - 1, 0), once, 1e-5);
   EXPECT_EQ(found.error.rows(), found.radiosity.rows()) << "bounds are known";
 }
 
-// Of the second half of the pocket's patches only the last one lets light out, and hardly any of it: millions of
-// bounces. Each of the two is followed by itself, and neither takes the other's bound.
+// Only the last patch of the pocket's second half lets light out, and very little: millions of bounces. Each of the two
+// is followed separately with its own bound.
 TEST(PocketTransport, FollowsEachPocketByItself) {
   constexpr PatchIndex half = in_pocket / 2;
   constexpr double little = 4e-6;
@@ -217,7 +217,8 @@ TEST(PocketTransport, FollowsEachPocketByItself) {
   EXPECT_LE(((found.radiosity - exact).abs() - found.error).maxCoeff(), 1e-6 * exact.maxCoeff());
 }
 
-// A room, and a ring of more patches than are eliminated, in which light goes to and fro a thousand times.
+// A room, and a ring with more patches than the limit of elimination, in which light goes back and forth a thousand
+// times.
 constexpr PatchIndex in_large_room = 5000;
 constexpr PatchIndex in_ring = 600;
 
@@ -232,7 +233,7 @@ RayTransport room_with_ring() {
   return RayTransport({of(rows), of(rows)});
 }
 
-// Of one band with white in the ring, others with less of it, the last without light.
+// A problem of bands with white in the ring, less of it in others, and no light in the last one.
 RadiosityProblem lit_ring(Eigen::Index bands) {
   const Eigen::Index size = in_large_room + in_ring;
   RadiosityProblem problem{{Field::Constant(size, bands, 0.5)}, Field::Zero(size, bands), Eigen::VectorXd::Ones(size)};
@@ -243,7 +244,7 @@ RadiosityProblem lit_ring(Eigen::Index bands) {
   return problem;
 }
 
-// In a pocket of too many patches for elimination what is left is B - E - R F B, times the bounces at most.
+// In a pocket too large for elimination the error is B - E - R F B, times the number of bounces at most.
 TEST(PocketTransport, SolvesLargePocketsByIterations) {
   const RadiosityProblem problem = lit_ring(1);
   const RaysWithPockets transport(room_with_ring(), highest_of(problem));
@@ -257,14 +258,15 @@ TEST(PocketTransport, SolvesLargePocketsByIterations) {
   EXPECT_TRUE(found.converged);
   const Field residual =
       problem.exitance + problem.scattering.reflect(transport.apply(found.radiosity)) - found.radiosity;
-  // What is followed is so to a hundredth of the tolerance, and times the bounces (1 / leak) the rest is an error, too.
+  // Light in pockets is followed to a hundredth of the tolerance. The residual times the bounces (1 / leak) is an
+  // error, too.
   ASSERT_EQ(found.error.rows(), found.radiosity.rows());
   const double followed = 0.01 * 1e-5 * found.irradiance.maxCoeff();
   EXPECT_LE(residual.bottomRows(in_ring).abs().maxCoeff() / leak, 2 * found.error.maxCoeff() + followed);
 }
 
-// More bands than go through the matrix together, of which some are solved long before others, one is dark and one is
-// not finite.
+// More bands than the matrix multiplies together. Some are solved long before others, one is dark, and one is not
+// finite.
 TEST(PocketTransport, SolvesEachBandToTheBitAsByItself) {
   constexpr Eigen::Index bands = 6;
   const RadiosityProblem problem = lit_ring(bands);
@@ -285,7 +287,7 @@ TEST(PocketTransport, SolvesEachBandToTheBitAsByItself) {
   }
 }
 
-// Each band is followed as it would be by itself, also one that is dark; on one thread as on two.
+// Each band is followed as if it were alone, including a dark one; on one thread and on two.
 TEST(PocketTransport, FollowsBandsAsEachByItself) {
   constexpr Eigen::Index bands = 3;
   constexpr double accuracy = 1e-6;
@@ -306,7 +308,7 @@ TEST(PocketTransport, FollowsBandsAsEachByItself) {
   EXPECT_TRUE((together.apply(problem.exitance) == found).all());
 }
 
-// Where patches reflect more than was known when the pockets were looked for, these say nothing.
+// Pockets do not apply to patches that reflect more than the limit of the search for pockets.
 TEST(PocketTransport, IsForNoHigherReflectances) {
   RadiosityProblem problem = lit(1);
   const RaysWithPockets transport = with_its_pockets(problem);
@@ -338,7 +340,7 @@ TEST(PocketTransport, HandsOnWhatIsNoNumber) {
   radiosity(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(around.apply(radiosity)(in_room, 0)));
 
-  // The ring is reached by its last patch alone, and followed by iterations.
+  // Only the last patch of the ring connects it. Iterations follow it.
   const RadiosityProblem large = lit_ring(2);
   const RaysWithPockets with_ring(room_with_ring(), highest_of(large));
   const PocketTransport around_ring(with_ring, *with_ring.pockets(highest_of(large)), large.scattering, true, 1e-6);
@@ -349,7 +351,7 @@ TEST(PocketTransport, HandsOnWhatIsNoNumber) {
   EXPECT_TRUE(found.col(1).tail(in_ring).isFinite().all()) << "the other band";
 }
 
-// What an observer gets is H of the iterate, in the pockets as elsewhere.
+// An observer receives H of the iterate, in the pockets and elsewhere.
 TEST(PocketTransport, TellsObserversAllLight) {
   RadiosityProblem problem = lit(1);
   problem.exitance(in_room + 3, 0) = 0.5;

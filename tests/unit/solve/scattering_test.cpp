@@ -20,7 +20,7 @@ Scattering grey_and_coloured() {
 
 const Eigen::VectorXd areas = Eigen::VectorXd::LinSpaced(size, 1, 2);
 
-// The first two patches are the sides of a sheet, and the last two; nothing lies behind the others.
+// The first two patches are the sides of a sheet, and so are the last two. Nothing lies behind the others.
 Scattering with_sheets() {
   Scattering scattering = grey_and_coloured();
   scattering.reflectance.row(1) << 0.1, 0.5;
@@ -47,7 +47,7 @@ TEST(Scattering, TheAdjointGivesTheSameProducts) {
   }
 }
 
-// Of errors that are known it is R; of those that are not known it is none where nothing is scattered.
+// For known errors it equals R. Unknown errors have no effect where nothing is scattered.
 TEST(Scattering, WhatScattersNothingHasNoErrorThatIsNotKnown) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   for (const Scattering& R : {grey_and_coloured(), with_sheets()}) {
@@ -85,7 +85,7 @@ TEST(Scattering, OfSheetsWhatIsNotScatteredIsAbsorbed) {
   EXPECT_TRUE(((reflected_square(R, H, areas) - product(H, R.reflect(H))).abs() < 1e-14).all());
 }
 
-// |dH| is no more than what follows from bounds on |dB| = R |dH|.
+// |dH| does not exceed the bound from |dB| = R |dH|.
 TEST(Scattering, ErrorsOfIrradianceAreBoundedByThoseOfRadiosity) {
   const Scattering R = with_sheets();
   for (int k = 0; k < 20; ++k) {
@@ -111,7 +111,7 @@ TEST(Scattering, TheIrradianceIsFoundFromWhatItIsReflectedTo) {
   EXPECT_TRUE((R.reflectance > 0).select((found - H).abs() < 1e-15, found == other).all());
 }
 
-// D T = R, and T h is measured by the plain norm as R^1/2 h is by that weighted by area.
+// D T = R. The plain norm of T h equals the area-weighted norm of R^1/2 h.
 TEST(Scattering, TheSymmetricRootIsOfR) {
   const Scattering R = grey_and_coloured();
   const SymmetricRoot root(R, areas);

@@ -31,7 +31,7 @@ TEST_P(EverySolver, AgreesWithADenseSolveToItsTolerance) {
       const Field exact = direct_solution(*room.transport, room.problem);
       const Eigen::ArrayXd error = area_norm(exact - solution.radiosity, room.problem.area);
       const Eigen::ArrayXd reflected = area_norm(exact - room.problem.exitance, room.problem.area);
-      // The bound is relative to the iterate's reflected light, which differs from the exact one's by 1e-8; plus
+      // The bound is relative to the iterate's reflected light, which differs from the exact one's by 1e-8, plus
       // rounding.
       for (Eigen::Index band = 0; band < 3; ++band) EXPECT_LE(error[band], 1.01e-8 * reflected[band] + 1e-14);
     }
@@ -48,7 +48,7 @@ TEST_P(EverySolver, ErrorBoundHoldsInEveryIteration) {
     const Eigen::ArrayXd error = area_norm(exact - solution.radiosity, room.problem.area);
     const Eigen::ArrayXd reflected = area_norm(solution.radiosity - room.problem.exitance, room.problem.area);
     for (Eigen::Index band = 0; band < 2; ++band) {
-      // The radiosity handed out is one reflection better than the iterate that was measured.
+      // The returned radiosity is one reflection better than the measured iterate.
       EXPECT_LE(error[band] / reflected[band], solution.history.back().error_bound) << k;
     }
   }
@@ -86,7 +86,7 @@ TEST_P(EverySolver, SaysThatASystemIsSingularBeforeIterating) {
   EXPECT_TRUE((solution.radiosity == room.problem.exitance).all());
 }
 
-// One patch that absorbs makes it regular, however little.
+// One patch that absorbs any light makes it regular.
 TEST_P(EverySolver, OneAbsorbingPatchIsEnough) {
   Room room = made_up(100, 1);
   room.problem.scattering.reflectance.setOnes();
@@ -99,7 +99,7 @@ TEST_P(EverySolver, OneAbsorbingPatchIsEnough) {
   EXPECT_TRUE(((exact - solution.radiosity).abs() <= solution.error * (1 + 1e-9) + 1e-10 * exact).all());
 }
 
-// The bound of every patch holds, and it is none where nothing is reflected.
+// The bound of every patch holds, and it is zero where nothing is reflected.
 TEST_P(EverySolver, PatchErrorsAreBounded) {
   const Room room = made_up(100, 0.8);
   const Field exact = direct_solution(*room.transport, room.problem);
@@ -108,7 +108,7 @@ TEST_P(EverySolver, PatchErrorsAreBounded) {
   ASSERT_EQ(solution.error.rows(), 100);
   EXPECT_TRUE(((exact - solution.radiosity).abs() <= solution.error + 1e-12).all());
   EXPECT_TRUE((solution.error.row(2) == 0).all());
-  // Not more than some times the tolerance: a bound that is always huge is none.
+  // At most a few times the tolerance: a huge bound is useless.
   EXPECT_LT(solution.patch_bound, 1e-2);
 }
 
@@ -125,7 +125,7 @@ TEST_P(EverySolver, StopsAtTheErrorAgainstAReference) {
   EXPECT_DOUBLE_EQ(history.front().true_error, 1);
 }
 
-// Bands whose lamps differ by a factor have solutions that do.
+// Bands whose lamps differ by a factor have solutions with the same factor.
 TEST_P(EverySolver, BandsOfOneColourHaveOneSolution) {
   Room room = made_up(100, 0.7);
   room.problem.exitance.col(1) = room.problem.exitance.col(0);
@@ -137,7 +137,7 @@ TEST_P(EverySolver, BandsOfOneColourHaveOneSolution) {
   ASSERT_EQ(solution.irradiance.cols(), 3);
 }
 
-// rho = 1 with kappa = 1 / 2, as half of the light leaves.
+// rho = 1 with kappa = 1 / 2, because half of the light leaves.
 TEST_P(EverySolver, SolvesPerfectReflectionInAnOpenScene) {
   Room room = made_up(100, 1, 2);
   room.problem.scattering.reflectance.setOnes();
@@ -150,12 +150,12 @@ TEST_P(EverySolver, SolvesPerfectReflectionInAnOpenScene) {
   for (Eigen::Index band = 0; band < 3; ++band) EXPECT_LE(error[band], 1.01e-9 * reflected[band] + 1e-14);
 }
 
-// Rows that sum up to 1.5 make more light of light: it grows beyond all numbers, and that is no solution.
+// Rows that sum to 1.5 multiply light: it grows without limit, and that is no solution.
 TEST_P(EverySolver, DivergenceIsNeverConvergence) {
   Room room = made_up(100, 0.9, 1 / 1.5);
   const Solution solution =
       solve(*room.transport, room.problem, {.solver = GetParam(), .relative_error = 1e-6, .max_iterations = 20000});
-  // Krylov methods may solve this system, too; what is handed out as a solution is one.
+  // Krylov methods may solve this system, too. Every returned solution is one.
   EXPECT_TRUE(solution.radiosity.allFinite());
   if (!solution.converged) return;
   const Field residual = room.problem.exitance +
@@ -164,7 +164,7 @@ TEST_P(EverySolver, DivergenceIsNeverConvergence) {
   EXPECT_LT(residual.abs().maxCoeff(), 1e-3);
 }
 
-// Squares of an exitance of 1e200 are beyond all numbers: no answer, but no crash.
+// Squares of an exitance of 1e200 overflow: no answer, but no crash.
 TEST_P(EverySolver, TooStrongALampHasNoAnswer) {
   Room room = made_up(50, 0.5);
   room.problem.exitance(1, 0) = 1e200;
@@ -221,7 +221,7 @@ TEST_P(EverySolver, TellsTheObserverAllOfTheIrradiance) {
     }
     return true;
   });
-  // B_k = E + rho o H_k: the last one is the solution where something is reflected.
+  // B_k = E + rho o H_k: the last one is the solution where light is reflected.
   const Field off = room.problem.exitance + room.problem.scattering.reflectance * last - solution.radiosity;
   EXPECT_LT(off.abs().maxCoeff(), 1e-4 * solution.radiosity.maxCoeff());
 }
@@ -234,8 +234,8 @@ TEST_P(EverySolver, StopsWhenTheObserverSaysSo) {
   EXPECT_THROW(solve(*room.transport, room.problem, {.solver = GetParam()}, observer), Cancelled);
 }
 
-// What is stopped after the second iterate is that iterate, which the observer was shown last, or with the H that it
-// brings.
+// A run that stops after the second iterate returns this iterate or one further reflection of it. The observer receives
+// it last.
 TEST_P(EverySolver, GivesItsLastIterateWhenThatIsAskedFor) {
   const Room room = made_up(100, 0.9);
   Field shown;
@@ -259,7 +259,7 @@ TEST_P(EverySolver, GivesItsLastIterateWhenThatIsAskedFor) {
   EXPECT_FALSE(solve(*room.transport, room.problem, {.solver = GetParam(), .keeps_unfinished = true}).stopped);
 }
 
-// H = F B and nothing else.
+// H = F B only.
 class Applied : public TransportOperator {
  public:
   explicit Applied(const RowTransport& transport) : transport_(transport) {}

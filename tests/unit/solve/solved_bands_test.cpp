@@ -24,7 +24,7 @@ TEST(SolvedBands, SolveMultiplesOnce) {
   Field reflectance = Field::Constant(2, 3, 0.5);
   EXPECT_EQ(solved_bands(two_patches(reflectance, exitance)).solved, (std::vector<Eigen::Index>{0}));
   EXPECT_TRUE((expanded(exitance.leftCols(1), solved_bands(two_patches(reflectance, exitance))) == exitance).all());
-  // Another reflectance, or lamps of different colours, are other systems.
+  // Another reflectance, or lamps of different colors, give other systems.
   reflectance(1, 1) = 0.6;
   EXPECT_EQ(solved_bands(two_patches(reflectance, exitance)).solved, (std::vector<Eigen::Index>{0, 1}));
   exitance(1, 2) = 2.0000001;

@@ -21,7 +21,7 @@ ExchangeAreas made_up() {
   return S;
 }
 
-// Half of the patches dark, half bright; the third band reflects nothing.
+// Half of the patches are dark, half bright. The third band reflects nothing.
 RadiosityProblem problem_in(const Eigen::VectorXd& area) {
   RadiosityProblem problem{{Field::Constant(size, 3, 0.9)}, Field::Zero(size, 3), area};
   problem.scattering.reflectance.topRows(size / 2) = 0.2;
@@ -44,8 +44,8 @@ TEST(SpectralRadius, IsThatOfADenseEigensolver) {
   }
 }
 
-// Two rooms that see little of each other have two eigenvalues close together: the power iteration takes hundreds of
-// steps for them. K has the blocks [[.7 (1 - e), .7 e], [.7 e, .69 (1 - e)]] for even light in each room.
+// Two rooms that see little of each other have two close eigenvalues: the power iteration takes hundreds of steps. For
+// even light in each room, K has the blocks [[0.7 (1 - e), 0.7 e], [0.7 e, 0.69 (1 - e)]].
 TEST(SpectralRadius, OfTwoRoomsIsFoundInFewSteps) {
   ExchangeAreas S(2 * size);
   const ExchangeAreas room = made_up();
@@ -68,8 +68,8 @@ TEST(SpectralRadius, OfTwoRoomsIsFoundInFewSteps) {
   EXPECT_GE(found.error[0] + 1e-12, std::abs(found.value[0] - exact));
 }
 
-// For a symmetric matrix ||G w|| / ||w|| never exceeds the radius and does not fall from step to step: ||G w||^2 =
-// <w, G^2 w> <= ||w|| ||G^2 w||.
+// For a symmetric matrix ||G w|| / ||w|| never exceeds the radius and never decreases: ||G w||^2 = <w, G^2 w> <= ||w||
+// ||G^2 w||.
 TEST(SpectralRadius, IsApproachedFromBelow) {
   const ExchangeAreas S = made_up();
   const Eigen::VectorXd area = row_sums(S);
@@ -85,8 +85,8 @@ TEST(SpectralRadius, IsApproachedFromBelow) {
   }
 }
 
-// Two plates that see nothing but each other, with reflectances .2 and .8: the eigenvalues of K are +-sqrt(.2 .8) =
-// +-.4, for F = 1.
+// Two plates that see only each other, with reflectances 0.2 and 0.8: the eigenvalues of K are +-sqrt(0.2 0.8) = +-0.4,
+// for F = 1.
 TEST(SpectralRadius, OfTwoPlatesHasEigenvaluesOfBothSigns) {
   ExchangeAreas S(2);
   S.set(0, 1, 1);
@@ -96,7 +96,7 @@ TEST(SpectralRadius, OfTwoPlatesHasEigenvaluesOfBothSigns) {
   EXPECT_NEAR(spectral_radius(*transport, problem, 2)[0], 0.4, 1e-14);
 }
 
-// In a closed room of one reflectance the constant mode is the largest: rho.
+// In a closed room of one reflectance the constant mode has the largest eigenvalue: rho.
 TEST(SpectralRadius, OfAClosedRoomIsItsReflectance) {
   const ExchangeAreas S = made_up();
   const Eigen::VectorXd area = row_sums(S);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-// A solution by daylight against paths, and what a verdict is worth.
+// A solution by daylight compared with paths, and the reliability of a verdict.
 namespace patchlight::daylight_office_test {
 namespace {
 
@@ -29,12 +29,12 @@ const VerifiedPart& part(const Verification& verification, const std::string& na
 }
 
 TEST(VerifyByDaylight, OfficeAgreesUntilTheSunIsTenPercentOff) {
-  // Ground in the sun differs by 10 % of the sun's share, some 6 % of all, with bars and noise of 1 %.
+  // The ground in the sun differs by 10 % of the sun's part, about 6 % in total, with bars and noise of 1 %.
   for (const double unit : {1.0, 1e-3}) {
     const Scene scene = unit == 1 ? daylight_office() : turned(daylight_office(), unit);
     const Simulation simulation = simulate(scene, with_error_bars(1200));
     const Field bar = simulation.error_bars->total();
-    // Deep in the room few paths find the spot in the sun: more of them, whose scatter is then a fair estimate of their
+    // Deep in the room few paths find the sunlit spot. With more paths, their scatter is a good estimate of their
     // noise.
     const Verification right = verify(scene, simulation, bar, {.paths = 8192});
     EXPECT_EQ(right.verdict, Verdict::agrees) << right.probability;
@@ -50,7 +50,7 @@ TEST(VerifyByDaylight, OfficeAgreesUntilTheSunIsTenPercentOff) {
 }
 
 TEST(VerifyByDaylight, LampOfTheRoomIsSeenInsideAlone) {
-  // Without its luminaire the room has less light, the ground as much as before.
+  // Without its luminaire the room has less light, but the ground has the same.
   const Scene scene = daylight_office();
   const Simulation simulation = simulate(scene, with_error_bars(1200));
   Scene wrong = scene;
@@ -62,7 +62,7 @@ TEST(VerifyByDaylight, LampOfTheRoomIsSeenInsideAlone) {
 }
 
 TEST(Verdict, TakesRoundingForAgreement) {
-  // Light that neither side has to sample: two sums of the same numbers.
+  // Light without sampling on both sides: two sums of the same numbers.
   Verification verification;
   verification.irradiance = Field{{76.000000000000007}};
   verification.bar = Field::Zero(1, 1);
@@ -72,7 +72,7 @@ TEST(Verdict, TakesRoundingForAgreement) {
 }
 
 TEST(Verdict, TakesNoLightMetForUpToThreePathsThatHave) {
-  // Rule of three: 1,000 paths without any hit bound the share that hits by 3 / 1000, here of 2 W/m^2.
+  // Rule of three: 1,000 paths without a hit bound the fraction of hits by 3 / 1000, here of 2 W/m^2.
   Verification verification;
   verification.irradiance = Field{{0.012}, {2}};
   verification.bar = Field::Zero(2, 1);
@@ -106,22 +106,22 @@ TEST(Verdict, WithWideBarsIsNeverThatBothAgree) {
     Verification verification = verify(furnace.scene, furnace.simulation, furnace.bar_of(0.45), few_paths);
     EXPECT_EQ(verification.verdict, Verdict::inconclusive) << verification.probability;
     EXPECT_NEAR(verification.parts.front().mean_difference[0], 0.37, 0.02);
-    // Every 40th patch 16 times too bright, with bars that say so.
+    // Every 40th patch is 16 times too bright, with bars of that size.
     H.setOnes();
     Field bar = furnace.bar_of(0.02);
     for (Eigen::Index i = 0; i < H.rows(); i += 40) H(i, 0) = 16, bar(i, 0) = 15;
     verification = verify(furnace.scene, furnace.simulation, bar, few_paths);
     EXPECT_EQ(verification.verdict, Verdict::inconclusive) << verification.probability;
-    // Bars that do not: both differ.
+    // Bars without that error: both differ.
     verification = verify(furnace.scene, furnace.simulation, furnace.bar_of(0.45), few_paths);
     EXPECT_EQ(verification.verdict, Verdict::disagrees) << verification.probability;
   }
 }
 
 TEST(Verdict, SeesACommonOffsetBelowTheNoiseOfPatches) {
-  // Off by 0.5 of the noise of each of 64 patches: chi-square rises by 16, 1.4 of its standard deviations of 11, and
-  // stays below 93.2, which is passed with a probability of 1 %; the sum is off by 0.5 sqrt(64) = 4 of its own.
-  // So many paths are not looked at again.
+  // Each of 64 patches has an error of 0.5 of its noise. Chi-square rises by 16, 1.4 of its standard deviations of 11.
+  // It stays below 93.2, which it exceeds with a probability of 1 %. The error of the sum is 0.5 sqrt(64) = 4 of its
+  // own standard deviations. With this many paths there is no second look.
   VerifyOptions paths = few_paths;
   paths.paths = 8192;
   for (const double unit : {1.0, 1e-3}) {

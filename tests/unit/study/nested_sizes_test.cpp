@@ -12,8 +12,8 @@ namespace {
 using namespace test;
 
 TEST(FinerThan, HasFourPatchesOrMoreInEachOfBothMeshes) {
-  // Cut where a furnished room needs it, and a uniform mesh: means over the patches of both can be taken without an
-  // error of their own. In metres, and turned in millimetres.
+  // A furnished room that is refined where needed, and a uniform mesh. Means over the patches of both are exact. In
+  // meters, and rotated in millimeters.
   for (const double unit : {1.0, 1e-3}) {
     const Scene scene = turned(furnished_room(0.7), unit);
     Request request;

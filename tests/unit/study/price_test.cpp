@@ -21,7 +21,7 @@ StudySetting setting(PatchIndex patches, double seconds, double error) {
   return made;
 }
 
-// A made-up study: the error falls as n^(-p/2), the truth being known, and seconds rise with n^2.
+// A made-up study with a known solution: the error decreases as n^(-p/2), and seconds grow with n^2.
 Study made_up(double order, double error_of_finest) {
   StudySweep sweep{"patch size", Swept::patch_size, {}};
   for (const PatchIndex n : {100, 400, 1600}) {
@@ -47,7 +47,7 @@ TEST(Order, IsThatOfThePowerWithWhichErrorsFall) {
 }
 
 TEST(Order, AllowsForTheErrorOfTheReference) {
-  // e(n) = n^(-p/2) - m^(-p/2) against a reference of m patches: what two errors of the same shape differ by.
+  // e(n) = n^(-p/2) - m^(-p/2) for a reference of m patches: the difference of two errors of the same shape.
   for (const double p : {0.5, 1.0, 1.7}) {
     const auto error = [p](double n, double m) { return std::pow(n, -p / 2) - std::pow(m, -p / 2); };
     const StudySetting coarse = setting(400, 1, error(400, 6400));
@@ -55,12 +55,13 @@ TEST(Order, AllowsForTheErrorOfTheReference) {
     EXPECT_TRUE(std::isnan(order_in_edge(coarse, fine, 6400)))
         << "the edges of the finer one are two of the reference's";
     StudySweep sweep{"patch size", Swept::patch_size, {coarse, fine}};
-    // And the bar is the reference's own error.
+    // The bar is the reference's own error.
     EXPECT_NEAR(richardson_bar(sweep, 6400), std::pow(6400, -p / 2), 1e-5 * std::pow(6400, -p / 2));
   }
 }
 
-// Errors of the lit cube's kind: beside a reference of 64 times the patches the plain ratio hardly sees its error.
+// Errors like those of the lit cube. With a reference of 64 times the patches the plain ratio is nearly free of its
+// error.
 TEST(Order, IsThePlainRatioOfErrorsFarFromTheReference) {
   const StudySetting coarse = setting(100, 1, 0.08);
   const StudySetting fine = setting(400, 1, 0.08 / std::pow(2, 1.2));
@@ -71,7 +72,7 @@ TEST(Order, IsThePlainRatioOfErrorsFarFromTheReference) {
 TEST(Order, IsNotKnownWhereErrorsDoNotFall) {
   EXPECT_TRUE(std::isnan(order_in_edge(setting(100, 1, 0.1), setting(400, 1, 0.1), 1600)));
   EXPECT_TRUE(std::isnan(order_in_edge(setting(100, 1, 0), setting(400, 1, 0), 1600)));
-  // The bar then goes by the least order, 1/2: e / (2^(1/2) - 1).
+  // The bar then uses the least order, 1/2: e / (2^(1/2) - 1).
   const StudySweep sweep{"patch size", Swept::patch_size, {setting(100, 1, 0.1), setting(400, 1, 0.1)}};
   EXPECT_NEAR(richardson_bar(sweep, 1600), 0.1 / (std::sqrt(2) - 1), 1e-12);
 }
@@ -121,11 +122,11 @@ TEST(Price, IsExtrapolatedByTheObservedOrderAndNoFartherThanSixteenTimesThePatch
 TEST(Price, CountsTheBarOfTheReference) {
   Study study = made_up(1, 0.01);
   study.reference.bar = 0.005;
-  EXPECT_NEAR(price_of(0.025, study).cpu_seconds, 1, 1e-9);  // 2 % and .5 %
+  EXPECT_NEAR(price_of(0.025, study).cpu_seconds, 1, 1e-9);  // 2 % and 0.5 %
 }
 
 TEST(Price, IsNotKnownWhereTheReferenceIsNoBetter) {
-  // An error of 1.9 % against a reference that is itself good to 4.55 %: whether 1 % is near nobody can tell.
+  // An error of 1.9 % relative to a reference of 4.55 %: a distance of 1 % cannot be determined.
   Study study = made_up(2, 0.019);
   study.reference.bar = 0.0455;
   EXPECT_EQ(price_of(0.01, study).finding, Finding::not_known);

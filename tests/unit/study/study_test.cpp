@@ -37,7 +37,7 @@ TEST(Study, OfAFurnaceHasTheClosedFormForReference) {
   const Study found = study(cube_room(0.7, 0.3), request_for(400), quick);
   EXPECT_TRUE(found.reference.closed_form);
   EXPECT_EQ(found.reference.bar, 0);
-  // Any mesh gives the answer, up to the solver's tolerance.
+  // Any mesh gives the solution, to the solver's tolerance.
   for (const StudySweep& sweep : found.sweeps) {
     for (const StudySetting& setting : sweep.settings) EXPECT_LE(setting.error, std::max(1e-6, setting.tolerance));
   }
@@ -77,7 +77,7 @@ TEST(Study, ChangesOneQuantityAtATime) {
   // A solver stops below its tolerance.
   for (const StudySetting& setting : found.sweeps[3].settings) EXPECT_LE(setting.own_error, 1.2 * setting.tolerance);
   EXPECT_GT(found.parts.mesh, 0);
-  // A share of a sum: at most all of it, but for rounding.
+  // A part of a sum: at most all of it, to rounding.
   EXPECT_LE(found.parts.worst_share, 1 + 1e-12);
 }
 
@@ -91,7 +91,7 @@ TEST(Study, IsOfLittleUseWhereLightIsTrapped) {
 TEST(Discrepancy, OfASolutionFromItselfIsNone) {
   const Simulation simulation = simulate(furnished_room(0.7), request_for(300));
   const Discrepancy found = discrepancy(simulation, reference_from(simulation));
-  // Means over the same patches: rounding only, and what the variance's difference of squares leaves of 1e-16.
+  // Means over the same patches: only rounding, and the error of 1e-16 in the variance's difference of squares.
   EXPECT_LT(found.of_means, 1e-12);
   EXPECT_LT(found.of_display, 1e-6);
 }

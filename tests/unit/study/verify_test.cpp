@@ -26,14 +26,14 @@ Request request_for(std::size_t patches, Sides sides = Sides::automatic) {
   return request;
 }
 
-// From front sides, with bars.
+// Front sides, with bars.
 Request with_error_bars(std::size_t patches) {
   Request request = request_for(patches, Sides::front);
   request.accuracy.error_bars = true;
   return request;
 }
 
-// The scene with one material's reflectance so many times as high.
+// The scene with the reflectance of one material multiplied by this factor.
 Scene repainted(Scene scene, const std::string& name, double factor) {
   for (Material& material : scene.materials) {
     if (material.name == name) material.reflectance *= factor;
@@ -41,14 +41,14 @@ Scene repainted(Scene scene, const std::string& name, double factor) {
   return scene;
 }
 
-// How far the differences as a whole are from 0, in standard errors by the noise of the paths alone; the worst band.
+// Distance of the mean difference from 0, in standard errors of the paths' noise alone, in the worst band.
 double sigmas_of_mean(const Verification& verification) {
   const Field difference = verification.irradiance - verification.paths.irradiance;
   const Field variance = verification.paths.standard_error.square();
   return (difference.colwise().sum().abs() / variance.colwise().sum().sqrt()).maxCoeff();
 }
 
-// How far the worst band's chi-square is above its mean, in standard deviations.
+// Distance of the worst band's chi-square above its mean, in standard deviations.
 double sigmas_of_verdict(const Verification& verification) {
   const auto degrees = static_cast<double>(verification.patches.size());
   return (verification.parts.front().chi_square.maxCoeff() - degrees) / std::sqrt(2 * degrees);
@@ -59,18 +59,18 @@ void expect_agreement(const Verification& verification) {
   EXPECT_LT(sigmas_of_verdict(verification), 2);
 }
 
-// By the noise of the paths alone, and by the verdict, which grants the bars as well.
+// Both tests must fail: by the noise of the paths alone, and by the verdict, which also includes the bars.
 void expect_disagreement_by_five_sigma(const Verification& verification) {
   EXPECT_EQ(verification.verdict, Verdict::disagrees) << "p = " << verification.probability;
   EXPECT_GT(sigmas_of_mean(verification), 5);
   EXPECT_GT(sigmas_of_verdict(verification), 5);
 }
 
-// A reflectance that is off by 5 % changes what is reflected by more than that where it is .7 to .8. Against bars of 1
-// to 2 % and the noise of 4096 paths, 2 %, each of 64 patches differs by x = 2 to 3 standard deviations: chi-square
-// rises by 64 x^2, and its own standard deviation is sqrt(2 64). In the two rooms bars are larger in the gaps behind
-// the shelves and beside the dividing wall, so that fewer patches see it. That the solution is 1 % too dark there makes
-// a lower reflectance the harder case.
+// An error of 5 % in a reflectance of 0.7 to 0.8 changes the reflected light by more than 5 %. Bars are 1 to 2 %, and
+// the noise of 4096 paths is 2 %. So each of 64 patches differs by x = 2 to 3 standard deviations. Chi-square rises by
+// 64 x^2, and its own standard deviation is sqrt(2 64). In the two rooms bars are larger in the gaps behind the shelves
+// and beside the dividing wall, so fewer patches detect it. The solution is 1 % too dark there, so a lower reflectance
+// is the harder case.
 
 void expect_agreement_until_repainted(const Scene& scene, const std::string& material,
                                       std::initializer_list<double> factors) {
@@ -89,7 +89,7 @@ TEST(Verify, TwoRoomsAgreeUntilTheyAreRepainted) {
   expect_agreement_until_repainted(model("two_rooms.obj"), "plaster_white", {0.95});
 }
 
-// A room of 2 x 1 x 1 m, divided by a wall but for a gap of 1 cm, with a lamp below the ceiling on one side.
+// A room of 2 x 1 x 1 m, divided by a wall except for a gap of 1 cm, with a lamp below the ceiling on one side.
 Scene rooms_with_a_gap() {
   Scene scene = with_box(empty_scene({grey(0.7), grey(0, 10)}), Point(0, 0, 0), Point(2, 1, 1), true);
   scene = with_quad(std::move(scene), {Point(1, 0, 0), Point(1, 0.99, 0), Point(1, 0.99, 1), Point(1, 0, 1)});
@@ -98,8 +98,8 @@ Scene rooms_with_a_gap() {
 }
 
 TEST(Verify, FewPathsThatMissAGapAreNotBelieved) {
-  // Few of 32 paths meet the gap, so that their spread tells too little. A right answer that they refuse is looked at
-  // once more; one whose walls reflect a tenth more is still refused.
+  // Few of 32 paths meet the gap, so their spread is too small. A correct solution that they reject gets a second look.
+  // A solution with walls that reflect a tenth more is still rejected.
   const Scene scene = rooms_with_a_gap();
   Request request = with_error_bars(600);
   request.mesh.sides = Sides::automatic;
@@ -119,7 +119,7 @@ TEST(Verify, FewPathsThatMissAGapAreNotBelieved) {
 }
 
 TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
-  // A furnace has B = H = 1 without any error of the mesh: what is left is the noise of the paths, so that no bar is
+  // A furnace has B = H = 1 without any error of the mesh. The only difference is the noise of the paths, so no bar is
   // needed.
   const Scene scene = cube_room(0.5, 0.5);
   Request request;
@@ -130,13 +130,13 @@ TEST(Verify, ChecksEveryPatchWhenFewerAreThere) {
   ASSERT_EQ(verification.patches.size(), simulation.mesh.size());
   EXPECT_EQ(verification.verdict, Verdict::agrees);
   EXPECT_LT(verification.bar.maxCoeff(), 1e-6);
-  // Without bars both deviations are the same but for the variance of Student's t.
+  // Without bars both deviations are equal, except for the variance of Student's t.
   const Field ratio = deviations_by_noise(verification) / deviations(verification);
   EXPECT_LT((ratio - std::sqrt(31.0 / 29)).abs().maxCoeff(), 1e-3);
 }
 
-// An irradiance that is a quarter too high everywhere is off by a quarter of what paths find; besides that by the
-// solution's own error, some 1 %, and by what chance leaves of the noise.
+// An irradiance that is a quarter too high everywhere differs by a quarter of the paths' irradiance. The solution's own
+// error adds about 1 %, plus the scatter of the noise.
 TEST(Verify, TellsTheTypicalErrorOfAPatch) {
   const Scene scene = model("cornell_box.obj");
   Simulation simulation = simulate(scene, request_for(1000, Sides::front));
@@ -150,8 +150,8 @@ TEST(Verify, TellsTheTypicalErrorOfAPatch) {
   EXPECT_LT(part.noise.maxCoeff(), 0.05);
 }
 
-// Two plates that see each other, repainted so that each patch differs by some two of its bars, and one of four times
-// their area that looks away from all light: its patches are 0 to both, and do not make the others' differences likely.
+// Two plates see each other, repainted so that each patch differs by about two of its bars. A third plate of four times
+// their area faces away from all light. Its patches are 0 to both, and do not make the other differences likely.
 TEST(Verify, PatchesThatAreDarkInBothGrantNothing) {
   Scene scene = empty_scene({grey(0.5, 1), grey(0.5, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
@@ -173,8 +173,8 @@ TEST(Verify, PatchesThatAreDarkInBothGrantNothing) {
 }
 
 TEST(Verify, LargePatchesAreChosenMoreOften) {
-  // Two plates that see each other, a patch of 4 m^2 and sixteen that add up to as much: of one checked patch, half the
-  // seeds choose the large one. 200 seeds: 100 with a standard deviation of 7.
+  // Two plates that see each other: a patch of 4 m^2 and sixteen with the same total area. With one checked patch, half
+  // the seeds choose the large one. 200 seeds: 100 with a standard deviation of 7.
   Scene scene = empty_scene({grey(0.5, 1)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
   for (int k = 0; k < 16; ++k) {
@@ -193,9 +193,9 @@ TEST(Verify, LargePatchesAreChosenMoreOften) {
   EXPECT_NEAR(large, 100, 28);
 }
 
-// A room with a block in it: the outer sides of the room and the inner ones of the block are left out and dark. One lit
-// side that is left out with them by mistake is black to the solution and to its paths alike, so that both agree on the
-// rest; it is found by itself. In m, turned, and in mm.
+// A room with a block in it. The outer sides of the room and the inner ones of the block are omitted and dark. One lit
+// side is omitted by mistake. It is black to both the solution and the paths, so they agree on the rest. A separate
+// check finds it. In m, rotated, and in mm.
 TEST(Verify, FindsLightOnASideThatWasLeftOut) {
   for (const double scale : {1.0, 1e-3}) {
     const Eigen::AngleAxisd turn(scale == 1 ? 0.0 : 0.7, Vector(1, 2, -0.5).normalized());

@@ -26,16 +26,16 @@ std::size_t bright_of_equal_areas(const std::vector<double>& values) {
   return BrightPatches(mesh, expected, threshold, occluder).size();
 }
 
-// One patch of 100 has nearly all of the variance: 8.613 of 8.615, for a mean of .795.
-// Without it that of the others is .0025.
+// One patch of 100 has nearly all of the variance: 8.613 of 8.615, for a mean of 0.795. Without it the others have
+// 0.0025.
 TEST(BrightPatches, AreThoseWithMostOfTheVariance) {
   std::vector<double> values(100, 0.5);
   values[40] = 30;
   EXPECT_EQ(bright_of_equal_areas(values), 1);
 }
 
-// A mean of .961: the one of 4.6 is above four times that. Without it the variance is 2.11 instead of 2.24: rays
-// towards it would lessen it by 6 %.
+// A mean of 0.961: the value 4.6 is above four times that. Without it the variance is 2.11 instead of 2.24: aimed rays
+// would reduce it by 6 %.
 TEST(BrightPatches, AreNoneWhereMostOfTheVarianceIsThatOfOthers) {
   std::vector<double> values(100, 0.1);
   std::fill_n(values.begin(), 24, 3.5);
@@ -43,7 +43,7 @@ TEST(BrightPatches, AreNoneWhereMostOfTheVarianceIsThatOfOthers) {
   EXPECT_EQ(bright_of_equal_areas(values), 0);
 }
 
-// The same with 1 of 200: 64 rays of 32 neighbours meet it some ten times only.
+// The same with 1 of 200: 64 rays of 32 neighbors meet it only about ten times.
 TEST(BrightPatches, AreSampledWhereRaysHardlyMeetThem) {
   std::vector<double> values(200, 0.1);
   std::fill_n(values.begin(), 48, 3.5);
@@ -51,8 +51,8 @@ TEST(BrightPatches, AreSampledWhereRaysHardlyMeetThem) {
   EXPECT_EQ(bright_of_equal_areas(values), 1);
 }
 
-// With 30 of 3.5 and 69 of 0.02 the mean is 1.06 + x / 100 for a bright one of x, and the variance without it 2.54;
-// with it 2.54 + .0099 x^2 - .0213 x: 1.75 times that for x = 15.
+// With 30 of 3.5, 69 of 0.02 and a bright one of x, the mean is 1.06 + x / 100. The variance is 2.54 without the bright
+// one, and 2.54 + 0.0099 x^2 - 0.0213 x with it: 1.75 times that for x = 15.
 TEST(BrightPatches, AreSampledFromTheGainOnThatPays) {
   std::vector<double> values(100, 0.02);
   std::fill_n(values.begin(), 30, 3.5);

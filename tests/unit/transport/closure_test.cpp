@@ -6,10 +6,11 @@
 namespace patchlight::closure_test {
 namespace {
 
-// An open scene whose raw entries are far off for one patch: patch 0 of 0.5 m^2 has exchange areas that add up to 2
-// m^2. One of them is 1 m^2, and as the least change weighs entries by their squares, nearly all of the 1.5 m^2 would
-// be taken from it: it would become negative. Entries without known errors have a standard error of 2 %. Patches 4 and
-// 5 exceed their area by 3 %, as noise may: three standard errors are 6 %. Patches 6 and 8 exceed it by 8 %.
+// An open scene whose raw entries have a large error for one patch: patch 0 of 0.5 m^2 has exchange areas that add up
+// to 2 m^2. One of them is 1 m^2. The least change weights entries by their squares. It would take nearly all of the
+// 1.5 m^2 from this entry, which would become negative. Entries without known errors have a standard error of 2 %.
+// Patches 4 and 5 exceed their area by 3 %, which noise can cause: three standard errors are 6 %. Patches 6 and 8
+// exceed it by 8 %.
 TEST(CloseExchangeAreas, CutsRowSumsAtThreeStandardErrorsWhereTheLeastChangeIsNegative) {
   constexpr PatchIndex size = 102;
   ExchangeAreas raw(size);

@@ -23,7 +23,7 @@ ExchangeAreas filled(PatchIndex size) {
 
 Eigen::VectorXd remainders(PatchIndex size) { return Eigen::VectorXd::LinSpaced(size, 0.5, 0.1); }
 
-// Areas for which every row of F sums up to 1: what is applied to values in [0, 1] stays there.
+// Areas for which every row of F sums to 1, so that values in [0, 1] stay there.
 Eigen::VectorXd areas(PatchIndex size) { return row_sums(filled(size)) + remainders(size); }
 
 std::unique_ptr<RowTransport> transport(PatchIndex size) {
@@ -52,10 +52,10 @@ double difference(const Field& a, const Field& b) { return (a - b).abs().maxCoef
 
 bool same_bits(const Field& a, const Field& b) { return a.rows() == b.rows() && (a == b).all(); }
 
-// F B in two orders of summation: each sum has some `size` roundings, its terms are positive and add up to at most 1.
+// F B in two orders of summation: each sum has about `size` roundings. Its terms are positive and add up to at most 1.
 double rounding(PatchIndex size) { return 2 * (size + 10) * std::numeric_limits<double>::epsilon(); }
 
-// Blocks have 64 patches: less than one, one, a little more, and a last one in part; 700 fill more blocks than there
+// Blocks have 64 patches: less than one, one, slightly more, and a partial last one. 700 fill more blocks than there
 // are stripes.
 constexpr PatchIndex sizes[] = {1, 5, 64, 65, 150, 700};
 
@@ -84,7 +84,7 @@ TEST(DenseTransport, ItsFourViewsAgree) {
   EXPECT_LT(difference(F->shoot(range, B.middleRows(60, 75)), F->apply(only)), rounding(size));
 
   const Eigen::MatrixXd block = F->form_factors(range, {0, size});
-  // The exported form factors leave the remainder out: F_ii of a flat patch is 0.
+  // The exported form factors omit the remainder: F_ii of a flat patch is 0.
   const Field own = (B.colwise() * (remainders(size).array() / areas(size).array())).middleRows(60, 75);
   const Field seen = (block * B.matrix()).array() + own;
   EXPECT_LT(difference(seen, whole.middleRows(60, 75)), rounding(size));
@@ -97,8 +97,8 @@ TEST(DenseTransport, KeepsReciprocity) {
   EXPECT_LT((exchange - exchange.transpose()).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-// A relaxation that takes part of everything it is given. B stays in [0, 1]: own form factors sum up to at most 1, and
-// no block begins beyond 700.
+// A relaxation that uses all of its arguments. B stays in [0, 1]: own form factors sum to at most 1, and no block
+// starts above 700.
 Relax mixed(double from_others) {
   return [from_others](const SweptPatches& patches) -> Field {
     const Field own = (patches.own_form_factors * patches.radiosity.matrix()).array();
@@ -107,10 +107,10 @@ Relax mixed(double from_others) {
   };
 }
 
-// Differences that rounding makes are carried on by at most 0.9 of themselves: together ten times as large.
+// Differences from rounding are passed on with a factor of at most 0.9: together ten times as large.
 double carried_rounding(PatchIndex size) { return 10 * rounding(size); }
 
-// Law: one pass over the matrix relaxes like gathering for each block by itself.
+// Law: for each block, one pass over the matrix equals gathering and relaxing.
 TEST(DenseSweep, IsTheSweepThatGathers) {
   const Relax there = mixed(0.6);
   const Relax back = mixed(0.5);
@@ -127,7 +127,7 @@ TEST(DenseSweep, IsTheSweepThatGathers) {
   }
 }
 
-// The newest radiosities count: without them a second block would come out otherwise, far beyond rounding.
+// The newest radiosities are used. Without them a second block would differ far beyond rounding.
 TEST(DenseSweep, TakesTheNewestRadiosities) {
   constexpr PatchIndex size = 150;
   const auto F = transport(size);
@@ -145,12 +145,12 @@ TEST(DenseSweep, FindsTheIrradianceOfWhatItStartsFrom) {
     for (const int bands : {1, 3, 5}) {
       const Relax relax = mixed(0.6);
       const Sweep first = F->sweep({radiosity(size, bands), {}, {}}, relax, {});
-      // Of what it starts from, the first sweep knows nothing.
+      // The first sweep has no irradiance of its start.
       EXPECT_EQ(first.irradiance.size(), 0);
       const Sweep second = F->sweep(first, relax, {});
       ASSERT_EQ(second.irradiance.rows(), size);
       EXPECT_LT(difference(second.irradiance, F->apply(first.radiosity)), rounding(size)) << size << ' ' << bands;
-      // Not that of the radiosities after it, nor is it left over from the sweep before.
+      // It is not that of the later radiosities, and not a rest of the previous sweep.
       EXPECT_GT(difference(second.irradiance, F->apply(second.radiosity)), 1e-6);
       const Sweep third = F->sweep(second, relax, {});
       EXPECT_LT(difference(third.irradiance, F->apply(second.radiosity)), rounding(size));

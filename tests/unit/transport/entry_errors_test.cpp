@@ -6,7 +6,7 @@
 namespace patchlight::entry_errors_test {
 namespace {
 
-// Half a step of a sixth of an octave, and rounding.
+// Half a step of a sixth of an octave, plus rounding.
 const double resolution = std::exp2(1.0 / 12) - 1 + 1e-12;
 
 TEST(EntryErrors, KeepEveryMagnitudeWithinTheirResolution) {
@@ -46,7 +46,7 @@ TEST(EntryErrors, AreZeroWhereNothingIsEstimated) {
   EXPECT_EQ(EntryErrors().size(), 0U);
 }
 
-// U times the error at the visible share S / U with the samples of the form factor U / A = 1/4, which are the most,
+// U times the error at the visible fraction S / U, with the maximum number of samples at the form factor U / A = 1/4,
 // rounded twice.
 TEST(EntryErrors, FollowFromTheUnoccludedValueAndTheAudit) {
   ExchangeAreas S(3);

@@ -53,7 +53,7 @@ TEST(ExchangeAreas, AreReadBackSymmetrically) {
   EXPECT_EQ(ExchangeAreas::bytes(size), 6 * 64 * 64 * sizeof(float));
 }
 
-// Every pair that has an entry is in one part, once.
+// Every pair with an entry is in one part, once.
 TEST(ExchangeAreas, AreGoneThroughEntryByEntry) {
   const ExchangeAreas S = filled();
   Eigen::MatrixXd found = Eigen::MatrixXd::Zero(size, size);

@@ -27,7 +27,7 @@ TEST(GroupExchange, IsTheSumOfTheEntries) {
   EXPECT_EQ(exchange_between_groups(S, group_of, 3), expected);
 }
 
-// One group of all patches exchanges what all rows add up to.
+// One group of all patches exchanges the sum of all rows.
 TEST(GroupExchange, OneGroupIsAll) {
   const ExchangeAreas S = numbered(100);
   const std::vector<std::uint32_t> one(100, 0);

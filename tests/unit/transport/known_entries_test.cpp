@@ -30,10 +30,10 @@ std::vector<std::uint8_t> some_parents(const NestedMesh& mesh, std::uint64_t see
   return marks;
 }
 
-// How far two assemblies of one mesh are apart.
+// Difference of two assemblies of one mesh.
 struct Differences {
   double largest = 0;     // |a - b| / (max(a, b) + min(A_i, A_j))
-  std::size_t kinds = 0;  // entries that are an estimate from samples in one of them only
+  std::size_t kinds = 0;  // entries that are an estimate from samples in only one of them
 };
 
 Differences between(const Assembly& one, const Assembly& other, const PatchMesh& mesh) {
@@ -58,12 +58,12 @@ Solution solved(Assembly raw, const PatchMesh& mesh, const Occluder& occluder, c
   return solve(*dense_transport(close_exchange(std::move(exchange)), area), problem, {.relative_error = 1e-9});
 }
 
-// Theorem: taking entries over from mesh to mesh gives what a fresh assembly gives, as samples follow from the two
-// patches of a pair alone. Two things follow from their clusters, which are others when a patch near by is cut:
-// rounding, as positions are floats in the cluster's frame, some 1e-7 of its size; and whether shadow rays are traced
-// at all, as between clusters with nothing in between they are not. The latter shows where one patch rises a little
-// above the plane of the other: rays may all miss the sliver that is seen, some 1e-5 of the hemisphere. Which slivers
-// are missed is chance; the solutions differ by about 1e-6. Three refinements, each from what the one before has left.
+// Theorem: reuse of entries from mesh to mesh gives the same result as a new assembly, because samples depend only on
+// the two patches of a pair. Two things depend on their clusters, which change when a patch nearby is cut. The first is
+// rounding: positions are floats in the cluster's frame, about 1e-7 of its size. The second is the choice to trace
+// shadow rays, which is skipped for clusters with nothing between them. That matters where one patch rises slightly
+// above the plane of the other. All rays may miss the visible sliver, about 1e-5 of the hemisphere. Misses are random,
+// and the solutions differ by about 1e-6. Three refinements, each from the result of the previous one.
 TEST(KnownEntries, GiveWhatAFreshAssemblyGives) {
   for (const Scene& scene : {test::furnished_room(0.5), test::test_room(0.8)}) {
     const Occluder occluder(scene);
@@ -78,7 +78,7 @@ TEST(KnownEntries, GiveWhatAFreshAssemblyGives) {
       const Differences found = between(taken_over, fresh, mesh.patches);
       EXPECT_LT(found.largest, 1e-4);
       EXPECT_EQ(found.kinds, 0U);
-      // It is cheaper, or nothing was taken over.
+      // It is cheaper, or nothing was reused.
       EXPECT_LT(taken_over.counts.shadow_rays, fresh.counts.shadow_rays);
 
       const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.patches.area.data(), mesh.patches.size());
@@ -108,7 +108,7 @@ TEST(KnownEntries, GiveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.error.partial, two.error.partial);
 }
 
-// When all is known there is nothing to do.
+// If everything is known there is nothing to compute.
 TEST(KnownEntries, OfTheSameMeshCostNothing) {
   const Scene scene = test::furnished_room(0.5);
   const Occluder occluder(scene);

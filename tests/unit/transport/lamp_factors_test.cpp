@@ -18,8 +18,8 @@ using namespace test;
 
 constexpr PolygonIndex lamp_of_furnished_room = 12;
 
-// A floor of 1 x 1 m under a lamp of 0.6 x 0.6 m at 2 m, with bars between them that leave slits: each hides most of
-// the lamp from any point.
+// A floor of 1 x 1 m under a lamp of 0.6 x 0.6 m at 2 m, with bars between them that leave slits. They hide most of the
+// lamp from every point.
 Scene under_bars(int bars, double slit) {
   Scene scene = empty_scene({grey(0.5), grey(0, 10)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
@@ -40,8 +40,8 @@ LampFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex l
   return lamp_factors(scene, mesh, occluder, {&side, 1}, {.seed = seed});
 }
 
-// Without anything between, both halves are the closed form; against the sum of exchange areas with the lamp's patches,
-// which are right to 1e-3.
+// With nothing in between, both halves are the closed form. The reference is the sum of exchange areas with the lamp's
+// patches, which are accurate to 1e-3.
 TEST(LampFactors, AreTheClosedFormWhereNothingIsBetween) {
   const Scene scene = under_bars(0, 0);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.2);
@@ -59,8 +59,8 @@ TEST(LampFactors, AreTheClosedFormWhereNothingIsBetween) {
   for (PatchIndex i = lamp.begin; i < lamp.end; ++i) EXPECT_EQ(factors.halves[0](i, 0), 0);
 }
 
-// Probes that agree must not be believed: through slits that leave 2 % of the lamp visible, 16 rays mostly meet nothing
-// but bars. The mean over patches, seeds and halves is compared with that of 4,096 rays for every pair.
+// Agreement of probes is not sufficient: through slits that leave 2 % of the lamp visible, 16 rays mostly meet only
+// bars. The mean over patches, seeds and halves is compared with that of 4,096 rays for every pair.
 TEST(LampFactors, HaveTheRightMeanBehindSlits) {
   const Scene scene = under_bars(30, 0.002);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.26);
@@ -106,7 +106,7 @@ TEST(LampFactors, HaveTheRightMeanBehindSlits) {
   EXPECT_NEAR(mean, expected, 3 * std::hypot(standard_error, 0.03 * expected));
 }
 
-// Half the difference of the halves, and what is stated, have the same mean square.
+// Half the difference of the halves and the stated error have the same mean square.
 TEST(LampFactors, StateTheErrorsThatTheirHalvesShow) {
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.15);
@@ -132,7 +132,7 @@ TEST(LampFactors, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.standard_error == two.standard_error).all());
 }
 
-// A lamp that is no convex quadrilateral is the sum of its triangles: an L of three squares.
+// A lamp other than a convex quadrilateral is the sum of its triangles: an L of three squares.
 TEST(LampFactors, OfAnyPolygonAreThoseOfItsParts) {
   const auto floor = [] {
     return with_quad(empty_scene({grey(0.5), grey(0, 10)}),

@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-// A room of 3 x 3 x 3 m; its floor is one patch, on which a box without a bottom covers this rectangle.
+// A room of 3 x 3 x 3 m. Its floor is one patch, on which a box without a bottom covers this rectangle.
 LostShare lost_under_box(const Point& low, const Point& high) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
   const std::vector<Quad> faces = box_faces(low, high, false);
@@ -28,8 +28,8 @@ LostShare lost_under_box(const Point& low, const Point& high) {
   return measure_lost_share(mesh, Occluder(scene), 1024, 1);
 }
 
-// Rays start from all over a patch, wherever it is that they see backs. The 128 starting points are stratified: they
-// know the share of a rectangle to a few hundredths, 4 / 128.
+// Rays start from all over a patch, wherever it sees backs. The 128 starting points are stratified: they estimate the
+// fraction of a rectangle to a few hundredths, 4 / 128.
 TEST(LostShare, FindsTheCoveredShareAnywhere) {
   const double expected = 2.8 / 9;
   const std::array<std::pair<Point, Point>, 4> boxes{{{Point(0.1, 0.1, 0), Point(1.1, 2.9, 1)},
@@ -43,9 +43,10 @@ TEST(LostShare, FindsTheCoveredShareAnywhere) {
   }
 }
 
-// A cube of 3 m with one patch a side, on whose floor a turned box without a bottom leaves little, half or most
-// exposed: the root mean square error of the covered share over 40 seeds is what is stated, exposure_errors() times the
-// exposed share, within a factor of two. Of 40 errors alone it is known to a ninth; the rest is that edges differ.
+// A cube of 3 m with one patch a side. A rotated box without a bottom on its floor leaves little, half or most exposed.
+// The root mean square error of the covered fraction over 40 seeds matches the stated one within a factor of two. That
+// is exposure_errors() times the exposed fraction. 40 errors alone estimate it to a ninth; the rest is the variation of
+// edges.
 TEST(LostShare, ErrsAsStated) {
   for (const double half : {0.4, 0.9, 1.3}) {
     for (const double turn : {0.0, 0.2, 0.5}) {
@@ -54,7 +55,7 @@ TEST(LostShare, ErrsAsStated) {
         const Vector turned(std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y, z);
         return Point(middle + turned);
       };
-      // Around a smaller box if it would reach out of the room.
+      // Around a smaller box if it would extend out of the room.
       const double h = std::min(half, 1.49 / (std::cos(turn) + std::sin(turn)));
       Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
       const std::vector<Quad> faces = box_faces(Point(-h, -h, 0), Point(h, h, 1), false);
@@ -80,8 +81,8 @@ TEST(LostShare, ErrsAsStated) {
   }
 }
 
-// A lintel between two jambs that stand at the walls of a room: where lintel and jamb touch, nothing else is seen of
-// either, though rays through the solids end on faces that lie against a wall of the room.
+// A lintel between two jambs at the walls of a room. Where lintel and jamb touch, nothing else sees them. Rays through
+// the solids still end on faces that touch a wall of the room.
 TEST(LostShare, FindsContactBetweenSolidsThatTouchWalls) {
   for (const double metres : {1.0, 0.001}) {
     Scene scene = empty_scene({grey(0.5)});
@@ -109,13 +110,13 @@ LostShare lost_among_overlapping(const Scene& scene, const KeptSides& kept, cons
   return measure_lost_share(mesh, Occluder(scene, Occluder::Blockers::all, find_coverings(scene, kept)), 256, 1);
 }
 
-// A rug drawn on a floor, which may have an underside, lies over it and faces the same way: before a wall whose back is
-// seen, both are in plain sight.
+// A rug on a floor, possibly with an underside, lies over it and faces the same way. Before a wall whose back is
+// visible, both are fully visible.
 TEST(LostShare, TakesNoRugForContact) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene = with_quad(std::move(scene), {Point(1, 1, 0), Point(3, 1, 0), Point(3, 3, 0), Point(1, 3, 0)});
-  // A table's top over them that looks down, and a board with its back to them.
+  // A table top above them that faces down, and a board with its back to them.
   scene = with_quad(std::move(scene), {Point(1, 1, 1), Point(1, 3, 1), Point(3, 3, 1), Point(3, 1, 1)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 0, 2), Point(0, 4, 2), Point(0, 4, 0)});
   std::vector<double> at_backs;
@@ -128,15 +129,15 @@ TEST(LostShare, TakesNoRugForContact) {
     EXPECT_EQ(lost.covered[top], 0);
     at_backs.push_back(lost.at_backs[top]);
   }
-  // A twentieth of the light, known to sqrt(0.05 * 0.95 / 256) or better by 256 groups of rays: two differ by less than
-  // twice the root of two of that.
+  // A twentieth of the light, known to sqrt(0.05 * 0.95 / 256) or better by 256 groups of rays. Two estimates differ by
+  // less than twice the root of two of that.
   EXPECT_GT(at_backs[0], 0);
   EXPECT_LT(at_backs[0], 0.1);
   EXPECT_NEAR(at_backs[1], at_backs[0], 0.039);
 }
 
-// A board before a facade, both of which look into the open. In a scene of 10 m a ray that meets nothing is traced
-// again from 0.1 mm behind the board, and there the facade is before it: the board sees the sky all the same.
+// A board before a facade, both of which face outdoors. In a scene of 10 m a ray without a hit is traced again from 0.1
+// mm behind the board, where the facade is before it. The board sees the sky anyway.
 TEST(LostShare, TakesNothingBehindAPatchForContact) {
   const auto square_at = [](double x, double half) {
     return Quad{Point(x, 5 - half, 5 - half), Point(x, 5 + half, 5 - half), Point(x, 5 + half, 5 + half),
@@ -154,7 +155,7 @@ TEST(LostShare, TakesNothingBehindAPatchForContact) {
   }
 }
 
-// A floor in the open and a rug in its plane: all that the rug sees is the sky.
+// A floor outdoors and a rug in its plane: the rug sees only the sky.
 TEST(LostShare, TakesNoFloorForContactWithARug) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene = with_quad(std::move(scene), {Point(1, 1, 0), Point(3, 1, 0), Point(3, 3, 0), Point(1, 3, 0)});
@@ -169,7 +170,7 @@ TEST(LostShare, TakesNoFloorForContactWithARug) {
   }
 }
 
-// What is known is not measured again: here it is made up.
+// Known values are not measured again. Here they are made up.
 TEST(LostShare, OfKnownPatchesIsTakenOver) {
   const Scene scene = test::furnished_room(0.5);
   const Occluder occluder(scene);
@@ -187,7 +188,7 @@ TEST(LostShare, OfKnownPatchesIsTakenOver) {
   }
 }
 
-// Of patches that see backs nothing is asked before that: told so, the same rays give the same shares.
+// Patches that see backs skip the preliminary rays. With this information the same rays give the same shares.
 TEST(LostShare, OfPatchesKnownToSeeBacksIsTheSame) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
   const std::vector<Quad> faces = box_faces(Point(1, 1, 0), Point(2, 2, 1), false);
@@ -210,7 +211,7 @@ TEST(LostShare, OfPatchesKnownToSeeBacksIsTheSame) {
     EXPECT_EQ(told.*share, all.*share);
 }
 
-// What is doubled twice takes four times as many rays, and others what they took: the same bits.
+// A patch that is doubled twice gets four times as many rays. The others keep their rays, and the same bits.
 TEST(LostShare, OfDoubledPatchesIsThatOfAsManyMoreRays) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(3, 3, 3), true);
   const std::vector<Quad> faces = box_faces(Point(0.3, 0.4, 0), Point(2.2, 1.9, 1), false);

@@ -49,14 +49,14 @@ TEST(Merged, EntriesAreSumsOverThePatches) {
       const double sum = summed(fine.exchange_areas, mesh.patches_of(G), mesh.patches_of(H));
       const auto entry = static_cast<double>(coarse.exchange_areas.at(G, H));
       EXPECT_EQ(entry, static_cast<double>(coarse.exchange_areas.at(H, G)));
-      // Narrowed toward zero, but for the order of at most 16 summands in double.
+      // Narrowed toward zero, apart from the order of at most 16 summands in double.
       EXPECT_LE(entry, sum * (1 + 1e-14));
       EXPECT_GE(entry, sum * (1 - single));
     }
   }
 }
 
-// Rows of the parents sum up to what those of their patches sum up to: closure carries over.
+// Rows of the parents have the same sums as those of their patches, so closure is preserved.
 TEST(Merged, KeepsRowSums) {
   const NestedMesh mesh = nested_room();
   const ClosedExchangeAreas fine = made_up(mesh.patches.size());
@@ -69,7 +69,7 @@ TEST(Merged, KeepsRowSums) {
   EXPECT_LT(((found - expected) / expected).abs().maxCoeff(), rounding);
 }
 
-// Law: where all patches of a parent have one radiosity, the mean irradiance of each parent is that of its patches.
+// Law: if all patches of a parent have one radiosity, the mean irradiance of each parent is that of its patches.
 TEST(Merged, GivesTheMeanIrradianceOfWhatIsConstantOnParents) {
   const NestedMesh mesh = nested_room();
   const PatchIndex size = mesh.patches.size();
@@ -82,8 +82,8 @@ TEST(Merged, GivesTheMeanIrradianceOfWhatIsConstantOnParents) {
 
   const Field means = means_by_parent(mesh, dense_transport(std::move(fine), area)->apply(of_parents(mesh, B)), area);
   const Field found = dense_transport(std::move(coarse), area_of_parents)->apply(B);
-  // Each entry is narrowed by less than one step of a float; values are up to 3, rows of F sum up to 1. What the
-  // narrowing takes is given back as the parent's own light.
+  // Each entry is narrowed by less than one step of a float. Values are up to 3, and rows of F sum to 1. The loss is
+  // returned as the parent's own light.
   EXPECT_LT((found - means).abs().maxCoeff(), 3 * single);
 }
 
@@ -105,7 +105,7 @@ TEST(EffectsOfParts, AreTheSquaredSumsOverTheParts) {
     const PatchRange g = mesh.patches_of(G);
     double expected = 0;
     for (PatchIndex i = 0; i < size; ++i) {
-      // What a parent does to itself is no part of it: its patches lie in one plane.
+      // A parent has no effect on itself: its patches lie in one plane.
       if (mesh.parent[i] == G) continue;
       for (Eigen::Index band = 0; band < 2; ++band) {
         double sum = 0;

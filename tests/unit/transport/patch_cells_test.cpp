@@ -8,7 +8,7 @@
 namespace patchlight::patch_cells_test {
 namespace {
 
-// Patches strewn over a box of these sides, that begins at a corner below 0.
+// Random patches in a box of these sides, with its corner below 0.
 PatchMesh strewn(PatchIndex count, const Vector& sides) {
   PatchMesh mesh;
   const auto drawn = [](PatchIndex i, std::uint32_t axis) { return hash({i, axis}) * 0x1p-32; };
@@ -20,7 +20,7 @@ PatchMesh strewn(PatchIndex count, const Vector& sides) {
   return mesh;
 }
 
-// The patches in a cell and around it have among them all that are within an edge of it, each once, whatever the level.
+// The cells of a patch and around it contain all patches within an edge of it, each once, at every level.
 TEST(PatchCells, NameAllThatAreNear) {
   const PatchMesh mesh = strewn(500, {4, 3, 0.5});
   constexpr double length = 0.3;
@@ -39,7 +39,7 @@ TEST(PatchCells, NameAllThatAreNear) {
   }
 }
 
-// Those of one cell follow each other, and lie within an edge along each axis.
+// Patches of one cell are consecutive, and lie within an edge along each axis.
 TEST(PatchCells, PutPatchesOfACellTogether) {
   const PatchMesh mesh = strewn(500, {4, 3, 0.5});
   const PatchCells cells(mesh, 0.3);
@@ -56,7 +56,7 @@ TEST(PatchCells, PutPatchesOfACellTogether) {
   }
 }
 
-// Patches at one point are near each other by any measure; none are in no cell.
+// Patches at one point are near each other by any measure. Without patches there are no cells.
 TEST(PatchCells, TakePatchesAtOnePoint) {
   PatchMesh mesh = strewn(3, {0, 0, 0});
   const PatchCells cells(mesh, 1e9);

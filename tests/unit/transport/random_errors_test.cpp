@@ -70,7 +70,7 @@ TEST(RandomErrors, AreLinearAndSymmetric) {
 }
 
 // E (D x)_i^2 = sum_j sigma_ij^2 x_j^2. The fourth moment of a sum with random signs is at most three times the square
-// of its second: the mean over N draws has a relative standard error of at most sqrt(2 / N).
+// of its second. So the mean over N draws has a relative standard error of at most sqrt(2 / N).
 TEST(RandomErrors, HaveTheVarianceOfTheEntries) {
   const Entries entries = cube(EntryKind::estimated);
   const Field x = values(24, 0);
@@ -118,14 +118,14 @@ TEST(RandomErrors, OfRaysThatAgreedFollowFromTheAudit) {
     entries.errors = EntryErrors(std::vector<double>{1, 1});
     entries.errors.set(0, 1, kind);
     const SamplingError& sampling = entries.sampling;
-    // A form factor of 0.035 takes the most samples.
+    // A form factor of 0.035 gets the maximum number of samples.
     const auto& unanimous = kind == EntryKind::all_visible ? sampling.visible : sampling.occluded;
     const double share = standard_error(unanimous, most_effort);
     ASSERT_GT(share, 0);
     const Field D = random_errors(view(entries), Eigen::Array2d(2, 5), 32, 1);
     EXPECT_LT((D.row(0).abs() / (5 * share * U) - 1).abs().maxCoeff(), 1e-14);
     EXPECT_LT((D.row(1).abs() / (2 * share * U) - 1).abs().maxCoeff(), 1e-14);
-    // Both signs come up.
+    // Both signs occur.
     EXPECT_LT(D.minCoeff(), 0);
     EXPECT_GT(D.maxCoeff(), 0);
   }

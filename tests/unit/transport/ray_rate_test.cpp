@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-// The rate itself is the machine's affair: it is finite, and only stated when there were rays enough to time.
+// The rate depends on the machine. It is finite, and only stated if there were enough rays to time.
 TEST(BareRayRate, IsStatedForEnoughRaysOnly) {
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.5);

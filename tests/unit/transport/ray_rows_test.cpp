@@ -27,7 +27,7 @@ namespace {
 
 using namespace test;
 
-// A scene cut into patches; stays where it is made, as what is traced refers to it.
+// A scene cut into patches. It cannot be moved, because traced rows refer to it.
 struct Place {
   Place(const Scene& scene, double max_edge, Sides sides = Sides::both)
       : Place(scene, kept_sides(scene, sides), max_edge) {}
@@ -74,7 +74,7 @@ Scene open_room() {
   return scene;
 }
 
-// Closure: each half by itself, with and without entries that have weights of their own.
+// Closure: each half separately, with and without entries that have weights of their own.
 TEST(RayRows, SumUpToWhatPatchesSee) {
   for (const Scene& scene : {furnished_room(0.5), open_room()}) {
     const Place place(scene, 0.4, Sides::front);
@@ -82,7 +82,7 @@ TEST(RayRows, SumUpToWhatPatchesSee) {
       const Eigen::ArrayXd expected = expected_row_sum(rows.lost).array();
       const RayTransport transport(rows.halves);
       for (std::size_t half = 0; half < 2; ++half) {
-        // Where hardly anything but backs is seen, none of 32 rays may meet a patch.
+        // Where almost only backs are visible, possibly none of 32 rays meets a patch.
         const Eigen::ArrayXd sums = transport.apply_half(half, Field::Ones(transport.size(), 1)).col(0);
         EXPECT_LT((sums == 0).select(0, sums - expected).abs().maxCoeff(), 1e-6) << half;
         EXPECT_LT((sums == 0).select(expected, 0).maxCoeff(), 0.1) << half;
@@ -101,9 +101,9 @@ TEST(RayRows, OfAClosedRoomLoseNothing) {
   EXPECT_TRUE(rows.lost.closed());
 }
 
-// Theorem: the halves are independent and without bias, so that half their difference has the variance of their mean.
-// Against closed exchange areas, whose own error is some hundredth of that; over some 800 patches the quotient of both
-// norms scatters by some 5 %.
+// Theorem: the halves are independent and unbiased, so half their difference has the variance of their mean. The
+// reference is closed exchange areas, whose own error is about a hundredth of that. Over about 800 patches the ratio of
+// both norms scatters by about 5 %.
 TEST(RayRows, ErrAsTheirHalvesTell) {
   const Assembled exact = assembled(furnished_room(0.5), 0.3);
   const Place place(furnished_room(0.5), 0.3, Sides::automatic);
@@ -120,7 +120,8 @@ TEST(RayRows, ErrAsTheirHalvesTell) {
   }
 }
 
-// Rays towards bright patches change the error, not the mean: that of light from them alone falls by far.
+// Rays towards bright patches change the error, not the mean. The error of light from these patches alone decreases by
+// a large factor.
 TEST(RayRows, FindTheLightOfBrightPatchesWithLessError) {
   const Assembled exact = assembled(furnished_room(0.5), 0.3);
   const Place place(furnished_room(0.5), 0.3, Sides::automatic);
@@ -131,7 +132,8 @@ TEST(RayRows, FindTheLightOfBrightPatchesWithLessError) {
   const auto error = [&](const TracedRows& rows) {
     return norm(RayTransport(rows.halves).apply(B) - expected, place.areas()) / norm(expected, place.areas());
   };
-  // 32 rays besides 64: where most of the light comes from these patches the error falls at least by the root of 1.5.
+  // 32 additional rays to 64: where most of the light comes from these patches, the error decreases at least by the
+  // root of 1.5.
   EXPECT_LT(error(place.rows_toward_first_polygon({})), 0.8 * error(place.rows()));
   EXPECT_LT(error(place.rows_toward_first_polygon({.rays = 512, .toward_bright = 256})), 0.02);
 }
@@ -160,7 +162,7 @@ TEST(RayRows, TakeMoreRaysWhereTheyAreDoubled) {
   }
 }
 
-// H = F B is linear; sums of some hundred positive terms round by some 1e-14.
+// H = F B is linear. Sums of a few hundred positive terms round by about 1e-14.
 TEST(RayRows, CarryLightLinearly) {
   const Place place(furnished_room(0.5), 0.5);
   const TracedRows rows = place.rows_toward_first_polygon({});
@@ -172,7 +174,7 @@ TEST(RayRows, CarryLightLinearly) {
   EXPECT_FALSE(transport.is_reciprocal());
 }
 
-// Bands are carried side by side, in loops of their own for one and for three.
+// Bands are computed side by side, with separate loops for one and for three.
 TEST(RayRows, CarryEachBandAlike) {
   const Place place(furnished_room(0.5), 0.5);
   const TracedRows rows = place.rows_toward_first_polygon({});
@@ -214,7 +216,7 @@ TEST(RayRows, HaveTheSameBitsForAnyNumberOfThreads) {
 struct RowsInBlocks {
   const Place place{furnished_room(0.5), 0.08, Sides::front};
   std::map<std::size_t, std::vector<std::int32_t>> kept;
-  int read = 0;  // blocks that were there
+  int read = 0;  // existing blocks
 
   TracedRows rows() {
     Eigen::VectorXd expected = Eigen::VectorXd::Zero(place.mesh.size());
@@ -262,8 +264,8 @@ TEST(RayRows, GoOnFromTheBlocksThatWereKept) {
 }
 
 TEST(RayRows, AreTracedAgainWhereBlocksAreDamaged) {
-  // Cut, longer, with patches and counts that cannot be, empty, and with a distance, a number of rays and a form factor
-  // that cannot be.
+  // Truncated, longer, with invalid patches and counts, empty, and with an invalid distance, number of rays and form
+  // factor.
   constexpr auto nan = std::bit_cast<std::int32_t>(std::numeric_limits<float>::quiet_NaN());
   RowsInBlocks run;
   const TracedRows whole = run.rows();
@@ -284,8 +286,8 @@ TEST(RayRows, AreTracedAgainWhereBlocksAreDamaged) {
   }
 }
 
-// Which points are drawn follows from where patches lie in the scene: a model that is moved, turned and scaled has the
-// same rows, but for rays that pass an edge so closely that rounding decides; of some 50,000 hits a few may differ.
+// Sample points depend on the positions of patches in the scene. So a model that is moved, rotated and scaled has the
+// same rows, except for rays so close to an edge that rounding decides. A few of about 50,000 hits may differ.
 TEST(RayRows, StayTheSameWhenTheModelIsMovedAndScaled) {
   Eigen::Affine3d motion = Eigen::Affine3d::Identity();
   motion.translate(Vector(30, -20, 7)).rotate(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized())).scale(1e-3);
@@ -299,7 +301,7 @@ TEST(RayRows, StayTheSameWhenTheModelIsMovedAndScaled) {
   EXPECT_LT(static_cast<double>(differing), 0.01 * static_cast<double>(a.size()));
 }
 
-// Backs of one-sided faces have no patches: what is seen of them is lost.
+// Backs of one-sided faces have no patches: rays that meet them are lost.
 TEST(RayRows, LoseWhatMeetsBacks) {
   // A lamp 1 cm below the ceiling, whose back the ceiling above it sees.
   const Place place(furnished_room(0.5), 0.5, Sides::front);
@@ -324,7 +326,7 @@ TEST(RayCounts, ArePowersOfTwoThatGrowWithTheArea) {
   EXPECT_EQ(counts.back() / counts.front(), 8U);
 }
 
-// Rounded, the number is within the root of 2 of what was asked for.
+// Rounded, the number is within a factor of the root of 2 of the requested one.
 TEST(RayCounts, OfEqualPatchesAreEqual) {
   PatchMesh mesh;
   mesh.area.assign(100, 0.3);

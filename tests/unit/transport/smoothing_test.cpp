@@ -37,7 +37,7 @@ TEST(Smoothing, LeavesAConstantAsItIsAndCarriesNothingAcrossAnEdge) {
   EXPECT_EQ(smooth.variance.maxCoeff(), 0);
 }
 
-// Where neighbours lie all around, moments of odd order vanish and slopes do not count.
+// Where neighbors lie on all sides, moments of odd order vanish and slopes have no effect.
 TEST(Smoothing, LeavesALinearFieldAsItIsInsideAFace) {
   const PatchMesh mesh = floor_and_wall();
   const Field field = column(mesh, [&](PatchIndex i) { return 1 + mesh.centroid[i].x() + 2 * mesh.centroid[i].y(); });
@@ -52,7 +52,7 @@ TEST(Smoothing, LeavesALinearFieldAsItIsInsideAFace) {
   EXPECT_GT(inside, 50);
 }
 
-// Noise of variance 1/12 in each half: the mean of both has 1/24, and the stated variance is what is left.
+// Noise of variance 1/12 in each half: the mean of both has 1/24, and the stated variance is the rest after smoothing.
 TEST(Smoothing, StatesTheVarianceThatIsLeft) {
   const PatchMesh mesh = floor_and_wall();
   const auto noise = [&](std::uint64_t half) {
@@ -61,11 +61,11 @@ TEST(Smoothing, StatesTheVarianceThatIsLeft) {
   const SmoothedHalves smooth = smoothed(mesh, far_away(mesh), {noise(1), noise(2)});
   const Field error = 0.5 * (smooth.halves[0] + smooth.halves[1]) - 3;
   EXPECT_LT(error.square().mean(), 1.0 / 24 / 8);
-  // Some 800 / 30 independent values: the quotient of the roots scatters by some 14 %.
+  // About 800 / 30 independent values: the ratio of the roots scatters by about 14 %.
   EXPECT_NEAR(std::sqrt(smooth.variance.mean() / error.square().mean()), 1, 0.35);
 }
 
-// Patches under something near keep their value.
+// Patches under a close object keep their value.
 TEST(Smoothing, KeepsToTheRadiusOfWhatIsNear) {
   const PatchMesh mesh = floor_and_wall();
   const Field field = column(mesh, [](PatchIndex i) { return std::abs(std::sin(3.0 * i)); });
@@ -75,8 +75,8 @@ TEST(Smoothing, KeepsToTheRadiusOfWhatIsNear) {
   for (PatchIndex i = 0; i < mesh.size(); i += 2) EXPECT_EQ(smooth.halves[1](i, 0), field(i, 0));
 }
 
-// The inside of a sheet 1 mm thick, which is dark, and the outside, which looks the same way and is bright: both halves
-// tell that one is not as the other, whatever the distances, of which means are taken, are.
+// The inside of a sheet 1 mm thick is dark. The outside, with the same orientation, is bright. Both halves show the
+// difference, at any distance for means.
 TEST(Smoothing, CarriesNothingIntoASpaceBehindAFace) {
   Scene scene = empty_scene({grey(0.5)});
   for (const double z : {0.0, 0.001})
@@ -105,8 +105,8 @@ TEST(Smoothing, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((found(1).variance == found(2).variance).all());
 }
 
-// Bands that are powers of two times one of them, in which the same patches are apart, to the bit; with patches that
-// look around near and far, so that cells of several sizes are used.
+// Bands that are powers of two times one of them, in which the same patches differ, to the bit. Patches have near and
+// far search radii, so that cells of several sizes are used.
 TEST(Smoothing, TreatsAllBandsAlike) {
   constexpr Eigen::Index bands = 6;
   const PatchMesh mesh = floor_and_wall();

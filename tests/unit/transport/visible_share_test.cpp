@@ -1,4 +1,4 @@
-// The mean estimate of an exchange area over many pairs and seeds is the true one, however small the opening is.
+// The mean estimate of an exchange area over many pairs and seeds is the true one for any size of the opening.
 #include "patchlight/transport/assemble.h"
 
 #include "mesh/mesher.h"
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// Unit squares 10 m apart; strips halfway between them leave 20 slits to a metre, which make up the share `open`. So
+// Unit squares 10 m apart. Strips halfway between them leave 20 slits per meter, with the fraction `open`. There are so
 // many strips that no ray passes beside them.
 Scene barred_squares(double open) {
   Scene scene = empty_scene({grey(0.5)});
@@ -35,7 +35,7 @@ Scene unbarred_squares() {
   return scene;
 }
 
-// What the first two polygons exchange, m^2; the others stand in the way and have no patches. 64 patches each.
+// Exchange area of the first two polygons, m^2, with 64 patches each. The others are obstacles without patches.
 double exchanged(const Scene& scene, double max_edge, const AssemblyOptions& options) {
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 0);
@@ -46,10 +46,10 @@ double exchanged(const Scene& scene, double max_edge, const AssemblyOptions& opt
   return row_sums(assemble_exchange_areas(mesh, Occluder(scene), options).exchange_areas).sum() / 2;
 }
 
-// A ray between uniform points of the squares crosses the strips at the mean of two uniform coordinates, whose
-// characteristic function is sinc^2 and vanishes at every whole period in a half metre: the share that passes is `open`
-// to the last digit, but for the geometry term, which varies by 2 % over metres, not over slits. 4096 pairs with form
-// factors of 5e-5, so that each takes 16 rays.
+// A ray between uniform points of the squares crosses the strips at the mean of two uniform coordinates. Its
+// characteristic function is sinc^2, which vanishes at every whole period in 0.5 m. So the fraction that passes is
+// `open` to the last digit, apart from the geometry term. That varies by 2 % over meters, not over slits. 4096 pairs
+// have form factors of 5e-5, so each has 16 rays.
 TEST(VisibleShare, HasTheRightExpectation) {
   constexpr int seeds = 16;
   const double whole = exchanged(unbarred_squares(), 0.1251, {});
@@ -70,8 +70,8 @@ TEST(VisibleShare, HasTheRightExpectation) {
       const double mean = sum / seeds;
       const double standard_error = std::sqrt(std::max(0.0, squares / seeds - mean * mean) / (seeds - 1));
       EXPECT_NEAR(mean, open, 3 * standard_error + 1e-4) << "size " << size;
-      // Independent rays: sqrt((1 - p) / (p n)) with n = 16 x 4096 x 16; stratified ones do no worse, within what 16
-      // seeds tell of a standard error, a sixth.
+      // Independent rays: sqrt((1 - p) / (p n)) with n = 16 x 4096 x 16. Stratified rays are no worse. 16 seeds
+      // estimate a standard error to a sixth.
       EXPECT_LT(standard_error, 1.5 * std::sqrt(open * (1 - open) / (16.0 * 4096 * seeds))) << "size " << size;
     }
   }

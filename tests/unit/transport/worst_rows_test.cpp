@@ -5,7 +5,7 @@
 namespace patchlight::worst_rows_test {
 namespace {
 
-// Defects times area: 0.1, 0.3, 0.3, 0; a large defect of a small patch comes last but one.
+// Defects times area: 0.1, 0.3, 0.3, 0. A large defect of a small patch is last but one.
 TEST(WorstRows, AreThoseWithTheLargestDefectTimesArea) {
   const Eigen::Vector4d row_sum(0.5, 1.25, 0.75, 0.5);
   const Eigen::Vector4d area(0.25, 1.5, 1.5, 8);

@@ -25,8 +25,8 @@ TEST(ClosedForms, TheAngledRectanglesContainThePerpendicularOnes) {
   }
 }
 
-// Strips of endless length see each other by F = 1 - sin(angle / 2), Howell C-5. A strip of length l misses what leaves
-// at its ends: a share of about 1 / l.
+// Infinite strips have F = 1 - sin(angle / 2), Howell C-5. A strip of length l loses light at its ends: a fraction of
+// about 1 / l.
 TEST(ClosedForms, LongRectanglesAreStrips) {
   constexpr double l = 1e4;
   for (const double degrees : {1, 5, 30, 90, 150, 179}) {
@@ -43,24 +43,24 @@ TEST(ClosedForms, AngledRectanglesAreReciprocal) {
   }
 }
 
-// Five walls of a cube see all that leaves the sixth.
+// Five walls of a cube receive all light of the sixth.
 TEST(ClosedForms, ACubeIsClosed) {
   EXPECT_NEAR(opposed_rectangles(1, 1, 1) + 4 * perpendicular_rectangles(1, 1, 1), 1, rounding);
 }
 
-// Discs of one size that nearly touch lose the share h / r; a small one sees r^2 / (h^2 + r^2) of a large one, and
-// discs far apart see r^2 / h^2 of each other.
+// Equal discs that nearly touch lose the fraction h / r. A small one receives r^2 / (h^2 + r^2) from a large one, and
+// discs far apart receive r^2 / h^2 from each other.
 TEST(ClosedForms, DiscsNearAndFar) {
   EXPECT_NEAR(coaxial_discs(1, 1, 1e-6), 1, 2e-6);
   EXPECT_NEAR(coaxial_discs(1e-3, 2, 1), 4.0 / 5, 1e-6);
   EXPECT_NEAR(coaxial_discs(1, 1, 1e3) * 1e6, 1, 1e-5);
 }
 
-// Endless cylinders: F_21 = r1 / r2. What the ends let out is a share of about r2 / h.
+// Infinite cylinders: F_21 = r1 / r2. A fraction of about r2 / h leaves at the ends.
 TEST(ClosedForms, LongCylinders) { EXPECT_NEAR(coaxial_cylinders(1, 3, 1e5), 1.0 / 3, 3e-5); }
 
-// Above the element, the quadrant of the sky that begins right above it; in front of it, a quarter, too: the wall to
-// the left and to the right covers half of the sky.
+// Above the element: the quadrant of the sky that starts directly above it. In front of it: a quarter, too, because the
+// wall to the left and to the right covers half of the sky.
 TEST(ClosedForms, ElementsBeforeLargeRectangles) {
   EXPECT_NEAR(element_to_parallel_rectangle(1e9, 1e9, 1), 0.25, 1e-8);
   EXPECT_NEAR(element_to_perpendicular_rectangle(1e9, 1e9, 1), 0.25, 1e-8);

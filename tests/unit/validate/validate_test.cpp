@@ -32,7 +32,7 @@ TEST(Validation, WhatIsNotANumberIsNotWithinItsBar) {
   EXPECT_FALSE(verdict(0.5, {0.5, nan, "nan"}));
 }
 
-// A case of the table passes, and with a wrong exact value it does not: a hundredth more is flagged.
+// A case of the table passes. With a wrong exact value it fails: a hundredth more is flagged.
 TEST(Validation, AWrongExactValueIsFlagged) {
   std::vector<ValidationCase> cases = validation_cases();
   cases.resize(1);

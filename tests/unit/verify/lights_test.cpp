@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-// Paths that meet luminaires, sun and sky, against closed forms; as they stand, and turned in a model of 1/1000 of the
-// size.
+// Paths that meet luminaires, sun and sky, compared with closed forms, in the original scene and rotated in a model of
+// 1/1000 of the size.
 namespace patchlight::lights_test {
 namespace {
 
@@ -27,7 +27,7 @@ PathEstimate on_front(const Scene& scene, PolygonIndex polygon) {
   return trace_irradiance(scene, kept_sides(scene, Sides::front), receivers);
 }
 
-// Four standard errors: a right value fails with a probability of 4e-4, decided once by the seeds.
+// Four standard errors: a correct value fails with a probability of 4e-4, fixed by the seeds.
 void expect_irradiance(const Scene& scene, PolygonIndex polygon, double exact, double largest_error) {
   for (const Scene& placed : placings(scene)) {
     const PathEstimate estimate = on_front(placed, polygon);
@@ -57,7 +57,7 @@ Scene cube_of(double reflectance) {
 }
 
 TEST(PathLights, EachFaceOfACubeGetsASixthOfTheLampInItsMiddle) {
-  // Phi / 6 straight on each face of 1 m^2, and by symmetry all faces are equal: H = Phi / (6 (1 - rho)).
+  // Phi / 6 directly on each face of 1 m^2. All faces are equal by symmetry: H = Phi / (6 (1 - rho)).
   for (const double reflectance : {0.0, 0.5}) {
     Scene scene = cube_of(reflectance);
     scene.luminaires = {point_at(Point::Zero(), 12)};
@@ -68,7 +68,7 @@ TEST(PathLights, EachFaceOfACubeGetsASixthOfTheLampInItsMiddle) {
 }
 
 TEST(PathLights, OneOfManyLuminairesStandsForAll) {
-  // One strong and many weak, all in the middle: their sum, whichever is chosen.
+  // One strong and many weak luminaires, all in the middle: their sum, for any choice.
   Scene scene = cube_of(0.5);
   for (int k = 0; k < 20; ++k) scene.luminaires.push_back(point_at(Point::Zero(), k == 3 ? 5 : 0.35));
   scene.luminaires.push_back(sphere_at(Point::Zero(), 0.01, 0.35));
@@ -76,7 +76,7 @@ TEST(PathLights, OneOfManyLuminairesStandsForAll) {
 }
 
 TEST(PathLights, SunShinesThroughAClearFace) {
-  // Through a clear ceiling of transmittance t at normal incidence the sun at the zenith gives E t on all of the floor.
+  // Through a clear ceiling of transmittance t at normal incidence the sun at the zenith gives E t on the whole floor.
   Scene scene = cube_room(0, 0);
   scene.materials.push_back(named("glass", 0, 0.6));
   scene.polygons[1].material = 1;
@@ -88,8 +88,8 @@ TEST(PathLights, SunShinesThroughAClearFace) {
   expect_irradiance(scene, 0, 800 * transmittance(pane_of(1.52, 0.6), cosine) * cosine / 2, 0.01);
 }
 
-// The form factor of two opposed unit squares at the distance of 1, with what a pane between them lets through: the
-// integral over all differences of two places, by midpoints.
+// The form factor of two opposed unit squares at distance 1 with a pane between them: the integral of its transmittance
+// over all differences of two points, by midpoints.
 double opposed_behind(const Pane& pane) {
   constexpr int steps = 400;
   double sum = 0;
@@ -104,8 +104,8 @@ double opposed_behind(const Pane& pane) {
 }
 
 TEST(PathLights, SkyIsSeenThroughHolesAndClearFaces) {
-  // A uniform sky of radiance L over a black box whose ceiling is clear, or not there: pi L F, with T(cos) in the
-  // integral of F. Of 4,096 rays the share F leaves: they scatter by no more than sqrt((1 - F) / F / 4096) = .031.
+  // A uniform sky of radiance L over a black box whose ceiling is clear or missing: pi L F, with T(cos) in the integral
+  // of F. The fraction F of 4,096 rays leaves: they scatter by at most sqrt((1 - F) / F / 4096) = 0.031.
   Scene scene = cube_room(0, 0);
   scene.materials.push_back(named("glass", 0, 0.7));
   scene.polygons[1].material = 1;
@@ -119,7 +119,8 @@ TEST(PathLights, SkyIsSeenThroughHolesAndClearFaces) {
 }
 
 TEST(PathLights, OpenGroundHasTheHorizontalIrradianceOfItsSky) {
-  // An overcast sky of the horizontal irradiance H on a horizontal face, whatever its reflectance. Turned with its up.
+  // An overcast sky gives the horizontal irradiance H on a horizontal face of any reflectance. The sky is rotated with
+  // its up direction.
   Scene scene = with_quad(empty_scene({grey(0.8)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   Sky sky;
   sky.kind = SkyKind::cie_overcast;

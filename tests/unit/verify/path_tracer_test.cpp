@@ -24,8 +24,8 @@ std::vector<PathReceiver> whole_fronts(const Scene& scene) {
   return receivers;
 }
 
-// Four standard errors, estimated with 31 degrees of freedom: a right value fails with a probability of 4e-4. The seeds
-// are fixed, so that it is decided once.
+// Four standard errors, estimated with 31 degrees of freedom: a correct value fails with a probability of 4e-4. The
+// seeds are fixed, so the result is, too.
 void expect_within_four_errors(const PathEstimate& estimate, double exact) {
   for (Eigen::Index i = 0; i < estimate.irradiance.rows(); ++i) {
     EXPECT_NEAR(estimate.irradiance(i, 0), exact, 4 * estimate.standard_error(i, 0) + 1e-12) << "receiver " << i;
@@ -33,7 +33,7 @@ void expect_within_four_errors(const PathEstimate& estimate, double exact) {
 }
 
 TEST(TraceIrradiance, FurnaceIsOne) {
-  // A closed room with E = 1 - rho everywhere: B = E + rho H = 1 and H = 1 at every point, whatever stands in it.
+  // A closed room with E = 1 - rho everywhere: B = E + rho H = 1 and H = 1 at every point, with any contents.
   for (const double reflectance : {0.0, 0.3, 0.9}) {
     Scene scene = empty_scene({grey(reflectance, 1 - reflectance)});
     scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -47,7 +47,7 @@ TEST(TraceIrradiance, FurnaceIsOne) {
 
 TEST(TraceIrradiance, OneLampInABlackCubeGivesTheFormFactor) {
   // H = E F with the form factors of opposed unit squares at distance 1 (Howell C-11) and of squares that share an edge
-  // (C-14). Beside the lamp, points on it alone would have no finite variance.
+  // (C-14). Beside the lamp, sampling points on it alone would have infinite variance.
   Scene scene = empty_scene({grey(0), grey(0, 7)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(1, 1, 1), true);
   for (std::size_t k = 0; k < faces.size(); ++k) scene = with_quad(std::move(scene), faces[k], k == 1 ? 1 : 0);
@@ -59,7 +59,7 @@ TEST(TraceIrradiance, OneLampInABlackCubeGivesTheFormFactor) {
 }
 
 TEST(TraceIrradiance, UniformCubeHasTheNeumannSeries) {
-  // B = E + rho H with H = B on all sides: H = E / (1 - rho). Per band; each with the throughput of its own.
+  // B = E + rho H with H = B on all sides: H = E / (1 - rho). Each band has its own throughput.
   Scene scene = cube_room(0, 0);
   scene.materials[0].reflectance = rgb(0.2, 0.5, 0.8);
   scene.materials[0].exitance = rgb(3, 1, 0.5);
@@ -74,7 +74,7 @@ TEST(TraceIrradiance, UniformCubeHasTheNeumannSeries) {
 }
 
 TEST(TraceIrradiance, LampEmitsFromTheSidesThatSimulateSays) {
-  // A lamp halfway between two black plates, each 1 m away: C-11 on the side that it shines at, nothing on the other.
+  // A lamp halfway between two black plates, each 1 m away: C-11 on the side that it shines on, nothing on the other.
   Scene scene = empty_scene({grey(0), grey(0, 7), grey(0, 2)});
   const auto square = [](double z) { return Quad{Point(0, 0, z), Point(1, 0, z), Point(1, 1, z), Point(0, 1, z)}; };
   scene = with_quad(std::move(scene), square(0));
@@ -98,7 +98,7 @@ TEST(TraceIrradiance, LampEmitsFromTheSidesThatSimulateSays) {
 }
 
 TEST(TraceIrradiance, SidesThatAreNotKeptAreBlack) {
-  // In a closed room where one wall has no patches, the light that it would send back is missing: as if it were black.
+  // In a closed room where one wall has no patches, its reflected light is missing, as if it were black.
   Scene black = cube_room(0.5, 1);
   black.materials.push_back(grey(0));
   black.polygons[3].material = 1;
@@ -114,7 +114,7 @@ TEST(TraceIrradiance, SidesThatAreNotKeptAreBlack) {
 }
 
 TEST(TraceIrradiance, IsTheMeanOverWhatIsNotCovered) {
-  // A furnace in which a solid stands on the floor and covers a quarter of it: what is exposed still has 1.
+  // A furnace with a solid on the floor that covers a quarter of it: the exposed part still has 1.
   Scene scene = empty_scene({grey(0.5, 0.5)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(2, 2, 2), true);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0), Point(1.5, 1.5, 1), false);
@@ -125,9 +125,10 @@ TEST(TraceIrradiance, IsTheMeanOverWhatIsNotCovered) {
 }
 
 TEST(TraceIrradiance, StandardErrorIsTheScatterOverSeeds) {
-  // With n seeds, the squared deviations from their mean add up to a chi-square of n - 1 degrees of freedom times the
-  // variance, the mean of what n runs state: four of its standard deviations, sqrt(2 (n - 1)), to either side. With 32
-  // paths many runs miss what the small lamp lights, and their stated errors are small, those of the others large.
+  // With n seeds, the squared deviations from their mean are a chi-square of n - 1 degrees of freedom times the
+  // variance. The variance is the mean of the n stated ones. The limit is four standard deviations, sqrt(2 (n - 1)), to
+  // either side. With 32 paths many runs miss the surfaces lit by the small lamp and state small errors. The others
+  // state large errors.
   constexpr int seeds = 64;
   const Scene scene = furnished_room(0.5);
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -163,7 +164,8 @@ TEST(TraceIrradiance, SameBitsWithAnyNumberOfThreads) {
   EXPECT_EQ(one.rays, two.rays);
 }
 
-// Of a path that half of the light goes on with after 34 bounces few are left in the end, with numbers of their own.
+// Half of the light of a path continues after 34 bounces. Few paths remain in the end, with random numbers of their
+// own.
 TEST(TraceIrradiance, LongPathsHaveTheNeumannSeries) {
   Scene scene = cube_room(0.98, 1);
   const PathEstimate estimate =

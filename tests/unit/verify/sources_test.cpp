@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// The path tracer's own sources, panes and mirrors: closed forms, and the solver's code as a second opinion.
+// The path tracer's own sources, panes and mirrors, compared with closed forms and with the solver's code.
 namespace patchlight::sources_test {
 namespace {
 
@@ -21,7 +21,7 @@ using namespace test;
 
 constexpr double pi = std::numbers::pi;
 
-// Shadow rays have no noise where one source lights a sensor and nothing is reflected diffusely.
+// Shadow rays have no noise if one source lights a sensor and nothing is reflected diffusely.
 constexpr double rounding_of_rays = 1e-6;
 
 PathEstimate at_sensors(const Scene& scene, const std::vector<Sensor>& sensors) {
@@ -41,7 +41,7 @@ Luminaire lamp_at(const Point& position, double intensity) {
   return lamp;
 }
 
-// A black square far from everything: a scene has to have a polygon.
+// A black square far from everything, because a scene must have a polygon.
 Scene black_scene() {
   return with_quad(empty_scene({grey(0)}),
                    {Point(90, 90, 90), Point(91, 90, 90), Point(91, 91, 90), Point(90, 91, 90)});
@@ -86,7 +86,7 @@ TEST(PathSources, SpotHasHalfAtItsBeamAndATenthAtItsField) {
   }
 }
 
-// Two codes for one table: each type, each symmetry, 500 directions.
+// Two implementations for one table: each type, each symmetry, 500 directions.
 TEST(PathSources, MeasuredIntensitiesAreThoseOfTheSolver) {
   const std::vector<std::vector<double>> of_c{{0}, {0, 45, 90}, {0, 60, 180}, {90, 150, 270}, {0, 100, 200, 360}};
   const std::vector<std::vector<double>> of_ab{{-90, -10, 90}, {0, 30, 90}};
@@ -131,7 +131,7 @@ TEST(PathSources, SunShinesThroughTwoPanesAtAnAngle) {
     const double angle = degrees * pi / 180;
     scene.sun = Sun{Vector(std::sin(angle), 0, std::cos(angle)), watts(600)};
     const double one_pane = transmittance(pane_of(1.52, 0.7), std::cos(angle));
-    // Light that the panes reflect to and fro between them, with the share R^2 each time, arrives as well.
+    // Light reflected back and forth between the panes, with the fraction R^2 each time, arrives as well.
     const double reflected = specular_reflectance(pane_of(1.52, 0.7), std::cos(angle));
     const double expected = 600 * std::cos(angle) * one_pane * one_pane;
     const PathEstimate straight =
@@ -159,7 +159,7 @@ void expect_the_solvers_radiance(const Sky& sky, const Vector& up) {
   }
 }
 
-// Both normalizations integrate a function of two angles by some 1e5 points: 1e-4 of each other.
+// Both normalizations integrate a function of two angles with about 1e5 points, and agree to 1e-4.
 TEST(PathSources, SkiesAreThoseOfTheSolver) {
   const Vector up = Vector(0.2, -0.1, 1).normalized();
   Sky sky;
@@ -266,7 +266,7 @@ TEST(PathMirrors, ANarrowSpotOnASmallMirrorOutshinesALargeOneElsewhere) {
 }
 
 TEST(PathMirrors, TheSunIsSeenInAMirrorByItsOutline) {
-  // A mirror of 2 m on the floor throws the sun onto a sensor above it that looks down, and not beside its outline.
+  // A mirror of 2 m on the floor reflects the sun onto a sensor above it that faces down, but not beyond its outline.
   Scene scene = empty_scene({grey(0), mirror_of(0.6)});
   scene = with_quad(std::move(scene), {Point(-1, -1, 0), Point(1, -1, 0), Point(1, 1, 0), Point(-1, 1, 0)}, 1);
   scene.sun = Sun{Vector(1, 0, 2).normalized(), watts(500)};

@@ -32,7 +32,8 @@ TEST(Occluder, EndPolygonsNeverBlock) {
 }
 
 TEST(Occluder, NoLightUnderAWallThatStandsOnTheFloor) {
-  // Segments from the floor left of the wall to the floor right of it, ends as near as 1e-4 to the wall, all cross it.
+  // All segments from the floor left of the wall to the floor right of it cross the wall. Their ends are at least 1e-4
+  // from it.
   const Occluder occluder(divided_room());
   std::vector<Segment> segments;
   for (const auto& [u, v, s, t] : scrambled_sobol(4096, 1)) {
@@ -43,8 +44,8 @@ TEST(Occluder, NoLightUnderAWallThatStandsOnTheFloor) {
 }
 
 TEST(Occluder, AnswersDoNotDependOnPositionAndScale) {
-  // The same room 1e6 m away, and of 1e-6 and 1e6 times its size. Ends keep clear of the wall's rim, where a hit may
-  // tip.
+  // The same room 1e6 m away, and of 1e-6 and 1e6 times its size. Ends keep away from the wall's rim, where a hit may
+  // change.
   const auto blocked = [&](double scale, const Vector& shift) {
     Eigen::Affine3d motion = Eigen::Affine3d::Identity();
     motion.translate(shift).scale(scale);
@@ -59,7 +60,7 @@ TEST(Occluder, AnswersDoNotDependOnPositionAndScale) {
   EXPECT_GT(std::count(here.begin(), here.end(), 1), 50);
   EXPECT_EQ(blocked(1e-6, Vector::Zero()), here);
   EXPECT_EQ(blocked(1e6, Vector::Zero()), here);
-  // 1e6 m away a double is exact to 1e-10 m: at most a segment that grazes an edge may change.
+  // 1e6 m away a double is exact to 1e-10 m: at most one segment that grazes an edge may change.
   const auto there = blocked(1, Vector(1e6, -1e6, 1e6));
   int changed = 0;
   for (std::size_t k = 0; k < here.size(); ++k) changed += here[k] != there[k];
@@ -96,8 +97,8 @@ TEST(Occluder, ACoveredPlaceIsOutOfSight) {
 }
 
 TEST(Occluder, ARayMeetsThePolygonThatLiesOver) {
-  // Without the coverings Embree may find either; here the rug is met in it, the floor beside it, wherever they are in
-  // the scene's order.
+  // Without the coverings Embree may find either. Here rays meet the rug inside its outline and the floor beside it,
+  // for any order in the scene.
   for (const bool rug_first : {false, true}) {
     Scene scene = room_with_rug();
     if (rug_first) std::swap(scene.polygons[0], scene.polygons[6]);

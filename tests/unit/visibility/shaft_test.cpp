@@ -33,7 +33,7 @@ std::vector<Quad> some_squares(const Scene& scene) {
   return squares;
 }
 
-// What the culler calls empty lets every ray through.
+// Every ray passes a shaft that the culler reports as empty.
 TEST(ShaftCuller, NothingStandsInAnEmptyShaft) {
   const Eigen::Affine3d motion(Eigen::Translation3d(50, 60, 70) * Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   for (const Scene& scene : {furnished_room(0.5), moved(furnished_room(0.5), motion)}) {
@@ -62,8 +62,8 @@ TEST(ShaftCuller, NothingStandsInAnEmptyShaft) {
   }
 }
 
-// A wall across a room hides its halves from each other; not so a wall with a door where the door can be seen through,
-// or one that is a little too small.
+// A wall across a room hides its halves from each other. A wall with a door does not where the door is visible through,
+// and neither does a wall that is slightly too small.
 TEST(Occluder, HidesWhatOnePolygonCutsOff) {
   const Scene room = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 4), true);
   const std::vector<Point> left = points_of(square_at(Point(0, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
@@ -82,7 +82,7 @@ TEST(Occluder, HidesWhatOnePolygonCutsOff) {
   EXPECT_TRUE(hides(with_door(3)));
 }
 
-// Patches of a face that rounding has bent lie behind it in places: it does not hide them.
+// Rounding has bent a face, so its patches lie behind it in places. It does not hide them.
 TEST(Occluder, DoesNotHidePatchesByTheirOwnPolygon) {
   const Scene room = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 4, 4), true);
   const std::vector<Point> left = points_of(square_at(Point(0.5, 1, 1), Vector(0, 1, 0), Vector(0, 0, 1)));
@@ -94,7 +94,7 @@ TEST(Occluder, DoesNotHidePatchesByTheirOwnPolygon) {
   EXPECT_TRUE(Occluder(before).hides(left, right));
   EXPECT_TRUE(Occluder(before).hides(left, right, {&no_other, 1}));
   EXPECT_FALSE(Occluder(before).hides(left, right, {&own, 1}));
-  // Another one does, whichever way they stand.
+  // Another face does, in either orientation.
   EXPECT_TRUE(Occluder(with_quad(before, plate(2))).hides(left, right, {&own, 1}));
 }
 
@@ -148,7 +148,7 @@ TEST(Occluder, PacketsAgreeWithSegments) {
       different += (blocked >> lane & 1) != expected[k + lane] ? 1 : 0;
     }
   }
-  // An edge passes within the rounding of 1e-7 of a random ray with a chance of about 1e-6.
+  // An edge passes within the rounding of 1e-7 of a random ray with a probability of about 1e-6.
   EXPECT_LE(different, 1);
 }
 

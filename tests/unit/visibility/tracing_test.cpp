@@ -17,7 +17,7 @@ using namespace test;
 
 int scenes_of_embree = 0;
 
-// How many Embree scenes are built while something is done.
+// Number of Embree scenes built during a call.
 template <typename Do>
 int built_by(const Do& something) {
   const int before = scenes_of_embree;
@@ -45,8 +45,9 @@ TEST(Tracing, BuildsOneSceneForEachSetOfBlockersInARun) {
   request.mesh.patches = 100;
   request.accuracy.relative_error = 0.006;
   Simulation simulation;
-  // All faces, which rays meet and which block the light from outside, those that can stand between patches, and all
-  // faces for the plan, which finds the goal of a run by daylight before it knows the blockers.
+  // Three scenes. The first has all faces, which rays meet and which block the light from outside. The second has the
+  // faces that can stand between patches. The third has all faces for the plan, which finds the goal of a daylight run
+  // before it has the blockers.
   EXPECT_EQ(built_by([&] { simulation = simulate(scene, request); }), 3);
   ASSERT_GT(simulation.accuracy.size(), 1U);
   EXPECT_EQ(built_by([&] {
@@ -60,7 +61,7 @@ TEST(Tracing, BuildsOneSceneForEachSetOfBlockersInARun) {
 TEST(Tracing, BuildsOneSceneMoreForOpaqueAndForClearFaces) {
   const Scene scene = with_pane(daylit_room());
   const Tracing tracing(scene);
-  // That of all opaque faces, with which the panes come as what weakens light.
+  // The scene of all opaque faces. The panes weaken its light.
   EXPECT_EQ(built_by([&] { lighting_of(scene, tracing), lighting_of(scene, tracing); }), 2);
   EXPECT_EQ(built_by([&] { tracing.all_faces(), tracing.all_faces(); }), 2);
 }
@@ -88,7 +89,7 @@ TEST(Tracing, SeesFromAnywhereWhatAnOccluderOfItsOwnSees) {
 }  // namespace
 }  // namespace patchlight::tracing_test
 
-// Stands before Embree's own function, and calls it.
+// Replaces Embree's own function, and calls it.
 extern "C" RTCScene rtcNewScene(RTCDevice device) {
   ++patchlight::tracing_test::scenes_of_embree;
   using Function = RTCScene (*)(RTCDevice);
