@@ -47,7 +47,7 @@ SolvedMesh solved_mesh(const Run& run, MeshToSolve& meshed, Search& search, Stag
   Simulation simulation = solved(run, meshed, transport, std::move(problem));
   clock.finish(Stage::solve);
   search.keep(simulation);
-  if (simulation.solution.stopped && !simulation.solution.converged) throw Cancelled();
+  if (simulation.solution.stopped && !simulation.solution.converged) throw Canceled();
 
   // 8. How far that may be off.
   SolvedMesh result = with_error_bars(run, {std::move(simulation), std::move(meshed.mesh)}, std::move(transport));
@@ -100,7 +100,7 @@ Simulation simulate(std::shared_ptr<const Scene> read, const Request& request, c
       next = search.next(result);
       if (!next) return finished(std::move(result.simulation), clock);
     }
-  } catch (const Cancelled&) {
+  } catch (const Canceled&) {
     if (!search.kept()) throw;
     return finished(*search.kept(), clock);
   }

@@ -84,7 +84,7 @@ struct RaysOfQuarters {
 /// If a patch sees another with twice its irradiance, closer than the length of that one, light is gathered again at
 /// the point that was hit. Two rays and two shadow rays to lamps are combined by the balance heuristic (Veach and
 /// Guibas 1995). For example, a patch of a pipe through a wall may lie on both sides of it, with equal quarters.
-/// \throws Cancelled.
+/// \throws Canceled.
 GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays, const Observer& observer);
 
 /// Options of unseen_differences().
@@ -110,7 +110,7 @@ struct UnseenDifferences {
 /// mean of its patch is gathered again along the same rays and propagated through all reflections. Differences inside
 /// the quarters are extrapolated (mesh_order). All this is done twice with different rays: the product has no bias by
 /// noise, and its mean over nearby patches has less noise. `weight` is that of each patch in the error. O(size) rays.
-/// \throws Cancelled.
+/// \throws Canceled.
 UnseenDifferences unseen_differences(const SolvedPatches& patches, const TransportOperator& transport,
                                      const Eigen::VectorXd& weight, const QuarterLook& look, const Observer& observer);
 

@@ -84,7 +84,7 @@ void write_groups(const std::filesystem::path& file, const GroupFactors& groups)
 namespace {
 
 void report(const Observer& observer, PatchIndex row, PatchIndex rows) {
-  if (observer && !observer({.stage = Stage::write, .fraction = static_cast<double>(row) / rows})) throw Cancelled();
+  if (observer && !observer({.stage = Stage::write, .fraction = static_cast<double>(row) / rows})) throw Canceled();
 }
 
 // A matrix over the patches: entry (i, j).

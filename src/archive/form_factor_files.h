@@ -49,14 +49,14 @@ struct FormFactorResult {
 };
 
 /// Writes the matrix F_ij = S_ij / A_i alone, rows and columns in the order of the patches. \throws OutputError,
-/// Cancelled.
+/// Canceled.
 void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,
                   const Observer& observer = {});
 
 /// Writes a folder, whole or not at all: F.npy or F.mtx, area.npy, lost_share.npy, raw_row_sum.npy, mesh.vtp,
 /// scene.json, info.json, standard_error.npy or .mtx where Exchange::entry_errors were kept, and the tables
 /// by_material.csv and by_object.csv if there are any. docs/reference/outputs/form-factor-folder.md describes them.
-/// \throws OutputError, Cancelled.
+/// \throws OutputError, Canceled.
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result,
                         const Observer& observer = {});
 

@@ -495,7 +495,7 @@ std::vector<PatchRange> read_lamps(const std::filesystem::path& file, const Patc
 void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, const RayFormFactors& found,
                     const std::string& command_line, const Observer& observer) {
   const auto tell = [&](double fraction) {
-    if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
+    if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Canceled();
   };
   const TracedRows& rows = found.exchange.rows;
   const RowsByClass by_class = rows_by_class(rows, scene, SpecularFaces(scene, reflections_of(found.plan)));

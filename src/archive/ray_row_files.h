@@ -34,7 +34,7 @@ void remove_row_blocks(const std::filesystem::path& folder, std::span<const std:
 
 /// Writes a folder of rows of rays, whole or not at all: for both halves of the rays sparse rows, the lamps that are
 /// apart with their form factors, area.npy, lost_share.npy, hit_distance.npy, mesh.vtp, scene.json, info.json.
-/// docs/reference/outputs/form-factor-folder.md describes them. \throws OutputError, Cancelled.
+/// docs/reference/outputs/form-factor-folder.md describes them. \throws OutputError, Canceled.
 void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, const RayFormFactors& found,
                     const std::string& command_line, const Observer& observer = {});
 

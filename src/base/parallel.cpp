@@ -76,7 +76,7 @@ void parallel_for(std::size_t count, Stage stage, const Observer& observer,
     if (wall_seconds() >= next_report) report();
   };
   for_each_item(count, observed, tbb::simple_partitioner());
-  if (stopped || !observer({.stage = stage, .fraction = 1})) throw Cancelled();
+  if (stopped || !observer({.stage = stage, .fraction = 1})) throw Canceled();
 }
 
 // Built in place: a copy of a global_control would end the limit of its original.

@@ -13,7 +13,7 @@ namespace patchlight {
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// The same in a stage whose progress is observed.
-/// \throws Cancelled when the observer returns false; calls already begun are finished first.
+/// \throws Canceled when the observer returns false; calls already begun are finished first.
 void parallel_for(std::size_t count, Stage stage, const Observer& observer,
                   const std::function<void(std::size_t)>& body);
 

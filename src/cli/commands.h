@@ -6,7 +6,7 @@
 
 #include <span>
 
-// The commands. All may throw InputError, OutputError, MemoryError and `Cancelled`.
+// The commands. All may throw InputError, OutputError, MemoryError and `Canceled`.
 namespace patchlight::cli {
 
 /// Reports the contents of a model and its problems. Returns input_error when the model cannot be solved.

@@ -87,7 +87,7 @@ int main(int count, char** values) {
     return failed(out_of_memory, error.what());
   } catch (const std::bad_alloc&) {
     return failed(out_of_memory, "out of memory\nhint: fewer --patches, or a larger --max-edge");
-  } catch (const Cancelled&) {
+  } catch (const Canceled&) {
     return failed(interrupted_run(), "interrupted; no further file was written");
   } catch (const std::exception& error) {
     if (is_process_limit(error)) {

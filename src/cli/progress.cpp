@@ -79,7 +79,7 @@ Observer observer_on(ProgressLine& line) {
 }
 
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer) {
-  if (!observer({.stage = Stage::read})) throw Cancelled();
+  if (!observer({.stage = Stage::read})) throw Canceled();
   Scene scene = read_scene(models, options);
   print_scene_warnings(scene);
   return scene;

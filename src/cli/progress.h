@@ -50,7 +50,7 @@ class ProgressLine {
 /// Shows progress on the line, which must outlive the observer, and continues until the run is interrupted.
 Observer observer_on(ProgressLine& line);
 
-/// Reads the models of a command. \throws `Cancelled` after an interrupt; else as read_scene().
+/// Reads the models of a command. \throws `Canceled` after an interrupt; else as read_scene().
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer);
 
 /// Starts to handle SIGINT, SIGTERM and SIGHUP, unless the caller ignores them: interrupted() becomes true. If the

@@ -182,7 +182,7 @@ ExitCode render(const RenderArguments& arguments) {
     if (other) of_other = make_picture(one, scene, *other, observer);
     stopped = interrupted();
     unfinished = picture.unfinished || (of_other && of_other->unfinished);
-    if (!may_write_what_is_there()) throw Cancelled();
+    if (!may_write_what_is_there()) throw Canceled();
     const WritingGuard guard;
     if (of_other)
       write_difference(one.file, picture, *of_other, bands_of(scene));

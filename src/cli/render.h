@@ -18,7 +18,7 @@ std::optional<Camera> camera_for(const PictureSettings& settings, const Scene& s
 /// \throws InputError when that camera is too far from the scene.
 void require_camera_in_reach(const PictureSettings& settings, const Scene& scene);
 
-/// Renders the requested image. \throws `Cancelled`.
+/// Renders the requested image. \throws `Canceled`.
 Picture make_picture(const PictureSettings& settings, const Scene& scene, const Simulation& simulation,
                      const Observer& observer);
 

@@ -81,7 +81,7 @@ class Iterates {
       throw InputError("--series",
                        "colored glazing or mirrors need one solution for each color, but a series shows only one\n"
                        "hint: leave --series out, or give --disable color");
-    if (found == solutions_.rend()) throw Cancelled();
+    if (found == solutions_.rend()) throw Canceled();
     return std::move(*found);
   }
 
@@ -108,7 +108,7 @@ void check_outputs(const SolveArguments& arguments) {
 
 // Reads the input and checks everything that could fail only after hours.
 SolveInput read(const SolveArguments& arguments, const Observer& observer) {
-  if (!observer({.stage = Stage::read})) throw Cancelled();
+  if (!observer({.stage = Stage::read})) throw Canceled();
   SolveInput input = read_input(arguments);
   input.scene = with_points(std::move(input.scene), arguments);
   std::vector<OutputFile> outputs = outputs_of(arguments);
@@ -153,7 +153,7 @@ Views views_of(const Scene& scene, Simulation& simulation, const SolveArguments&
       views.lightmap = bake_lightmap(simulation, arguments.lightmap.options, observer);
       looking.finish(Stage::render);
     }
-  } catch (const Cancelled&) {
+  } catch (const Canceled&) {
     simulation.unfinished = true;
   } catch (const InputError& error) {
     if (arguments.lightmap.folder.empty()) throw;
@@ -204,7 +204,7 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   with.look = tell_of_meshes(arguments, line);
   with.row_blocks = checkpoint.blocks({*results.scene, input.request.effects});
   simulation = simulate(results.scene, input.request, observed, with);
-  if (!may_write_what_is_there()) throw Cancelled();
+  if (!may_write_what_is_there()) throw Canceled();
   results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());
   results.provenance = {.command_line = arguments.command_line,
@@ -270,7 +270,7 @@ void write_solution(const SolveArguments& arguments, const Results& results,
 }
 
 void throw_if_interrupted() {
-  if (interrupted()) throw Cancelled();
+  if (interrupted()) throw Canceled();
 }
 
 // Writes the views, the report and finally the series. The run can be stopped between two files.
@@ -369,7 +369,7 @@ ExitCode solve(const SolveArguments& arguments) {
   // 2. Compute and write the views
   if (!arguments.discards) keep_what_is_there();
   results.views = views_of(*results.scene, results.simulation, arguments, observer);
-  if (!may_write_what_is_there()) throw Cancelled();
+  if (!may_write_what_is_there()) throw Canceled();
   results.report = report_on(results, arguments.request);
   line.reset();
   write_views(arguments, results, surface, outputs);

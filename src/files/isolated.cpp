@@ -168,7 +168,7 @@ bool was_stopped(int status) {
 }
 
 void require_good_end(const std::string& message, int status, const std::string& file) {
-  if (was_stopped(status)) throw Cancelled();
+  if (was_stopped(status)) throw Canceled();
   const bool ended_well = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !message.empty();
   if (!ended_well) throw InputError(file, how_it_ended(status) + "; the file is damaged, export it again");
 }

@@ -166,7 +166,7 @@ bool has_few_patches(const PatchMesh& mesh, PatchIndex j) {
 // where these are too few. If the radiosity is curved evenly, a sixth of it is left at the edge of the patch, and more
 // at narrower peaks (docs/theory/irradiance-at-a-point.md). Unknown is the part of `errors.display` that the plane does
 // not explain. If that is not known and a polygon side has no more than four patches, it is all that these reflect.
-// O(patches) with a bounded number around each vertex. Throws Cancelled.
+// O(patches) with a bounded number around each vertex. Throws Canceled.
 Slopes slopes_of(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder,
                  const RadiosityErrors& errors, const Observer& observer) {
   const Planes planes(mesh, values, occluder);

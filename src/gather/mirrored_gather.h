@@ -15,7 +15,7 @@ struct MirroredGatherOptions {
 
 /// Irradiance at points by radiosity that they see in mirrors and clear faces: MirrorView's rays, each of which goes on
 /// as light does between patches. In most_replicates independent parts, whose scatter is the standard error. Patches'
-/// own errors count as their light does. O(points x rays). \throws Cancelled.
+/// own errors count as their light does. O(points x rays). \throws Canceled.
 GatheredIrradiance gather_mirrored(const PatchMesh& mesh, const FieldView& radiosity, const MirrorView& view,
                                    const Occluder& occluder, std::span<const Sensor> sensors,
                                    const MirroredGatherOptions& options, const Observer& observer = {});

@@ -45,7 +45,7 @@ void add(DirectIrradiance& direct, const DirectIrradiance& more);
 /// patch and source, with one shadow ray each. Luminaires without extent are sampled by the solid angle of the patch
 /// from the luminaire. The fraction of a patch lit by these or by the sun is exact up to rounding, from the outlines of
 /// all shadows, so no hole is missed. With more than about 1,500 triangles in between, it is sampled too. O(patches x
-/// (luminaires x lamp_samples + sun_samples + sky_samples)). \throws Cancelled.
+/// (luminaires x lamp_samples + sun_samples + sky_samples)). \throws Canceled.
 DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options = {},
                                    const Observer& observer = {});
 

@@ -47,7 +47,7 @@ struct ExchangeAndLight {
 
 /// Traces rows and computes the light of lamps_apart(). Light that all surfaces emit alike, and the light of many
 /// lamps, stays in the rows, which also sample bright patches directly. Uses Steps::ray_exchange if given; lamps that
-/// it does not know are sampled by shadow rays. \throws Cancelled; InputError when these are too many.
+/// it does not know are sampled by shadow rays. \throws Canceled; InputError when these are too many.
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});
 
 /// The same in some of the bands, by the run `part` that has only these. Rows are the same; the light that lamps send

@@ -20,7 +20,7 @@ struct RayFormFactors {
   Diagnostics notes = {};   ///< on polygons that lie one on the other
 };
 
-/// The counterpart of find_form_factors(), for Steps::ray_exchange. \throws InputError, MemoryError, Cancelled.
+/// The counterpart of find_form_factors(), for Steps::ray_exchange. \throws InputError, MemoryError, Canceled.
 RayFormFactors find_ray_form_factors(const Scene& scene, const Request& request, const Observer& observer = {});
 
 }  // namespace patchlight

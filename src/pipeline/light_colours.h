@@ -17,7 +17,7 @@ struct LightColour {
 /// The colors that a ray run distinguishes; empty where one set of form factors serves all bands.
 std::vector<LightColour> light_colours(const Run& run);
 
-/// Solves a mesh in each color separately, and combines the solutions. \throws Cancelled, InputError.
+/// Solves a mesh in each color separately, and combines the solutions. \throws Canceled, InputError.
 SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& colours, const MeshToSolve& meshed,
                              StageClock& clock);
 

@@ -40,14 +40,14 @@ struct MeshTransport {
   std::optional<RayLight> light;                  ///< with rows of rays, the light of RayLight
 };
 
-/// lit_problem() of a mesh with the exposed parts of its patches. \throws Cancelled.
+/// lit_problem() of a mesh with the exposed parts of its patches. \throws Canceled.
 LitProblem lit_problem(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport);
 
 /// Computes the exchange areas of all pairs, with visibility from shadow rays, unless Steps::exchange gives them. Also
 /// computes the share of each patch's hemisphere in which no patch is visible. With rows on demand
 /// (AssemblyOptions::storage) only lost shares are computed: the exchange areas have no patches, and the facts neither
 /// row sums nor counts. With error bars, `known` exchange areas and lost shares are reused; without, the rate of bare
-/// rays is measured. \throws Cancelled.
+/// rays is measured. \throws Canceled.
 RawTransport raw_transport(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known);
 
 /// The same from known rows of rays.
@@ -55,7 +55,7 @@ RawTransport raw_transport(RayTransportAndLight by_rays);
 
 /// The transport after closure: each row sums to the visible share of its patch. Rows stay unchanged without
 /// AssemblyOptions::close, and rows on demand in any case; their facts are those of `raw`. The mesh must outlive the
-/// transport, and for rows on demand the run's tracing, too. \throws Cancelled.
+/// transport, and for rows on demand the run's tracing, too. \throws Canceled.
 MeshTransport closed_transport(const Run& run, const Plan& plan, const NestedMesh& mesh, RawTransport raw);
 
 }  // namespace patchlight

@@ -60,7 +60,7 @@ std::uint64_t seed_on(const Known& known, std::uint64_t seed);
 LightingOptions lighting_options(const Plan& plan, const PatchMesh& mesh);
 
 /// `exposed_area` is that of problem_of(). Where one band stands for all, direct light is computed once. \throws
-/// Cancelled.
+/// Canceled.
 LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                        const Known& known = {});
 
@@ -77,7 +77,7 @@ LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostSh
 /// quarters are the patches of `quarters`. `rays` (limited to 2 to 8) go from a patch of mean size to each luminaire
 /// and the sun, and eight times as many (16 to 64) to the sky. Other patches follow LightingOptions. Each path by
 /// mirrors takes half of `rays` (2 to 8). Quarters with equal ray counts use the same samples, which `seed` chooses.
-/// \throws Cancelled.
+/// \throws Canceled.
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& quarters, std::uint64_t seed,
                               int rays);
 

@@ -52,7 +52,7 @@ struct ConservingSolution {
 /// Corrects a solution B = E + R (F B + H_direct) so that each closed space conserves flux, by the Sherman-Morrison
 /// formula: a second solution, of `shape` reflected, is the response to a missing watt. The residual of the second
 /// solution is added to the error of the first. `row_sum` is s_j. Returns the solution unchanged, with a `shape` of 0,
-/// where there is no closed space or one of both solutions does not converge. \throws Cancelled.
+/// where there is no closed space or one of both solutions does not converge. \throws Canceled.
 ConservingSolution conserving_flux(const RaysWithPockets& transport, const RadiosityProblem& problem, Solution solution,
                                    const Eigen::VectorXd& row_sum, const Observer& observer = {});
 
@@ -78,7 +78,7 @@ struct RaySolution {
 /// Solves B = E + rho o (F B + H_direct) with separate lamps and conserved flux (ConservedFlux). Gathers again by each
 /// half of the rays, and smooths the light from other patches: docs/theory/ray-method-solution.md. The error combines
 /// the difference of the halves, the error of the row sums that both halves share, the bias of smoothing, and the
-/// reflections of these. \throws Cancelled; InputError for solvers that do not support rows of rays.
+/// reflections of these. \throws Canceled; InputError for solvers that do not support rows of rays.
 RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWithPockets& transport,
                             const RayLight& light, const TransportFacts& facts, const SolverOptions& options);
 

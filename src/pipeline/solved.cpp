@@ -56,7 +56,7 @@ Solution light_of_lamps(const RowTransport& transport, const RadiosityProblem& p
                        .work = static_cast<double>(rows) / static_cast<double>(problem.exitance.rows())}};
   const Progress last{
       .stage = Stage::solve, .fraction = 1, .iteration = &solution.history[0], .irradiance = [&H] { return H; }};
-  if (observer && !observer(last)) throw Cancelled();
+  if (observer && !observer(last)) throw Canceled();
   return solution;
 }
 
@@ -149,7 +149,7 @@ Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitan
                           const Observer& observer) {
   Field H = Field::Zero(exitance.rows(), exitance.cols());
   for (const PatchRange& lamp : lamps_of(exitance)) {
-    if (observer && !observer({.stage = stage})) throw Cancelled();
+    if (observer && !observer({.stage = stage})) throw Canceled();
     const Eigen::Index count = lamp.end - lamp.begin;
     H += transport.shoot(lamp, exitance.middleRows(lamp.begin, count));
   }

@@ -12,7 +12,7 @@
 
 namespace patchlight {
 
-/// Direct irradiance by emitting patches, F E, from their rows alone, W/m^2. \throws Cancelled.
+/// Direct irradiance by emitting patches, F E, from their rows alone, W/m^2. \throws Canceled.
 Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
                           const Observer& observer);
 
@@ -22,7 +22,7 @@ SolveWith solver_as_planned(SolveWith solve, const Plan& plan);
 
 /// The solution of B = E + rho o (F B + H_direct) on a mesh, and its light balance. The solver's relative error is that
 /// of the mesh's plan, or a smaller one from solve_for_interest(). Simulation::plan records the last one. \throws
-/// Cancelled.
+/// Canceled.
 Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport& transport, LitProblem problem);
 
 }  // namespace patchlight

@@ -55,7 +55,7 @@ std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simula
 }
 
 // unseen_differences() of a simulation in all bands, including those of luminaires, sun and sky. `needed` is the
-// simulation in the needed bands; `rays` start at each quarter of a patch in each half. Throws Cancelled.
+// simulation in the needed bands; `rays` start at each quarter of a patch in each half. Throws Canceled.
 UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const InNeededBands& needed,
                                         const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
   QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};

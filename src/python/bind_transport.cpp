@@ -35,7 +35,7 @@ struct TransportProblem {
 };
 
 // For each sensor (row) and patch, the irradiance for unit radiosity of that patch: its form factor including
-// occlusion. NaN for sensors inside walls. Throws `Cancelled`.
+// occlusion. NaN for sensors inside walls. Throws `Canceled`.
 Field sensor_factors(const TransportProblem& problem, const Observer& observer) {
   const Scene& scene = problem.world->scene();
   const Occluder& occluder = problem.world->all_faces();
@@ -54,7 +54,7 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   return factors;
 }
 
-// Computes form factors with closure and keeps them. Throws InputError, MemoryError, `Cancelled`.
+// Computes form factors with closure and keeps them. Throws InputError, MemoryError, `Canceled`.
 TransportProblem transport_problem(const std::shared_ptr<const Scene>& scene, const Request& request,
                                    const Observer& observer) {
   // 1. The form factors before closure, which a run applies

@@ -21,7 +21,7 @@ void bind_errors(pybind11::module_& module) {
       output(error.what());
     } catch (const MemoryError& error) {
       PyErr_SetString(PyExc_MemoryError, error.what());
-    } catch (const Cancelled&) {
+    } catch (const Canceled&) {
       PyErr_SetNone(PyExc_KeyboardInterrupt);
     }
   });

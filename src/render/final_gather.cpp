@@ -124,7 +124,7 @@ std::vector<Candidate> candidates(const PictureView& view, const FinalGatherOpti
 }
 
 // Records of the light from other patches where a picture sees patches that reflect: first far from each other, then
-// closer where those that are there serve too little. Same bits for any number of threads. Throws Cancelled.
+// closer where those that are there serve too little. Same bits for any number of threads. Throws Canceled.
 IrradianceCache gathered_records(const PictureView& view, const FinalGatherOptions& options, const Observer& observer) {
   IrradianceCache records(view.solved.luminous_weights);
   const int strides = std::countr_zero(static_cast<unsigned>(first_stride / last_stride)) + 1;
@@ -456,7 +456,7 @@ GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radianc
     gather.take_samples(gather.wanted(16), part_of_stage(observer, 0.6, 0.75));
     gather.take_samples(gather.wanted(static_cast<std::uint32_t>(options.most_samples)),
                         part_of_stage(observer, 0.75, 1));
-  } catch (const Cancelled&) {
+  } catch (const Canceled&) {
     unfinished = true;
   }
   Image image = gather.image();

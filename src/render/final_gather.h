@@ -76,7 +76,7 @@ struct GatheredImage {
 ///
 /// Pixels take stratified samples under a tent filter: first 4 each, then as many as the requested error needs.
 /// Image::error comes from the differences between pairs of samples, in a pixel and its neighbors, and between records.
-/// The result does not depend on the number of threads. \throws Cancelled before there is a picture.
+/// The result does not depend on the number of threads. \throws Canceled before there is a picture.
 GatheredImage final_gather(const SolvedLight& solved, const SmoothField& radiance, const Lens& lens,
                            const FinalGatherOptions& options = {}, const Observer& observer = {});
 

@@ -55,7 +55,7 @@ struct BakeOptions {
 /// Bakes the light at the texels of charts: direct light by shadow rays, and reflected light by a final gather into the
 /// solution, as in pictures. `sent_besides` is the light of each patch that does not depend on the irradiance on its
 /// front: its exitance and the light through a sheet, W/m^2. The result does not depend on the number of threads.
-/// \throws Cancelled.
+/// \throws Canceled.
 Lightmap bake(const SolvedLight& solved, const FieldView& sent_besides, PackedCharts charts, const BakeOptions& options,
               const Observer& observer = {});
 

@@ -84,7 +84,7 @@ struct RenderOptions {
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, from the smoothed
 /// radiance of the patches. Sides without patches are transparent to the camera; where nothing is met the surroundings
 /// are seen. \throws InputError when eye and target are one point or the field of view is not between 0 and 180
-/// degrees; Cancelled.
+/// degrees; Canceled.
 Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
              const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 

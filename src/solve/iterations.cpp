@@ -216,7 +216,7 @@ void Iterations::tell(const std::function<Field()>& irradiance) {
 
 // Marks the run as stopped, so that the observer is not called again.
 void Iterations::stop() {
-  if (!options_.keeps_unfinished || solution_.history.empty()) throw Cancelled();
+  if (!options_.keeps_unfinished || solution_.history.empty()) throw Canceled();
   solution_.stopped = true;
 }
 

@@ -77,7 +77,7 @@ class Iterations {
   /// Counts work that was done otherwise, in applications.
   void count(double applications) { work_ += applications; }
 
-  /// Notifies the observer between two iterates, at most ten times a second. \throws Cancelled, like record(), unless
+  /// Notifies the observer between two iterates, at most ten times a second. \throws Canceled, like record(), unless
   /// SolverOptions::keeps_unfinished.
   void keep_observer();
 

@@ -63,7 +63,7 @@ void check(const Request& request, const CompareOptions& options);
 
 /// Assembles a scene once and solves it with conjugate gradients to 1e-4 of the requested error, as the reference. Then
 /// runs every solver from the lamps until its true error, ||B_ref - B_k||_A / ||B_ref - E||_A in the worst band, is
-/// small enough. \throws InputError, MemoryError, Cancelled.
+/// small enough. \throws InputError, MemoryError, Canceled.
 Comparison compare(const Scene& scene, const Request& request, const CompareOptions& options,
                    const Observer& observer = {});
 

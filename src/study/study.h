@@ -143,7 +143,7 @@ void check_for_study(const Request& request);
 /// - the estimators of form factors on a small mesh, which do not compete.
 /// The reference is the closed form where there is one: a closed room with E = 1 - rho. Otherwise: a solution with half
 /// the edges of the finest size, a quarter of the patch area of adaptive meshes, and four times the samples.
-/// \throws InputError, Cancelled, MemoryError if the reference does not fit.
+/// \throws InputError, Canceled, MemoryError if the reference does not fit.
 Study study(const Scene& scene, const Request& request, const StudyOptions& options = {},
             const Observer& observer = {});
 

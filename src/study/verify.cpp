@@ -103,7 +103,7 @@ std::vector<std::uint32_t> drawn_by_weight(std::span<const double> weights, std:
 }
 
 // VerifyOptions::left_out of the sides that are not kept, with the light that paths find there when all sides are.
-// `mean` is the mean irradiance of the checked patches, W/m^2; reflections as PathOptions has it. Throws Cancelled.
+// `mean` is the mean irradiance of the checked patches, W/m^2; reflections as PathOptions has it. Throws Canceled.
 std::vector<LeftOutSide> trace_left_out(const Scene& scene, const KeptSides& kept, const Spectrum& mean,
                                         const VerifyOptions& options, bool follows_reflections,
                                         const Observer& observer) {

@@ -116,7 +116,7 @@ Field irradiance_bar(const Simulation& simulation, double relative);
 /// tested for each part and family. Too good an agreement passes. A comparison that disagrees by noise is repeated
 /// once on the same rows, with 16 times as many paths, at least 8,192. Noise means: rows whose paths scatter more than
 /// a fifth of their bars give most of chi-square. Paths see the scene without the lights and colors that are skipped
-/// by force; they simulate every other effect. The result does not depend on the number of threads. \throws Cancelled.
+/// by force; they simulate every other effect. The result does not depend on the number of threads. \throws Canceled.
 Verification verify(const Scene& scene, const Simulation& simulation, const FieldView& bar,
                     const VerifyOptions& options = {}, const Observer& observer = {});
 

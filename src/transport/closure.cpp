@@ -51,7 +51,7 @@ constexpr int max_iterations = 2000;
 Field column(const Eigen::VectorXd& x) { return x.array(); }
 
 void report(const Observer& observer) {
-  if (observer && !observer({.stage = Stage::closure, .fraction = 0})) throw Cancelled();
+  if (observer && !observer({.stage = Stage::closure, .fraction = 0})) throw Canceled();
 }
 
 // The sums that the rows should have, and how well they are known.

@@ -59,7 +59,7 @@ struct KnownErrors {
 ///
 /// If an entry would become negative, a closed scene falls back to symmetric scaling. An open scene falls back to
 /// cutting row sums at the area plus three standard errors. The raw entries stay if no symmetric matrix with this
-/// pattern has such sums. docs/theory/closure.md. \throws Cancelled.
+/// pattern has such sums. docs/theory/closure.md. \throws Canceled.
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
                                          const Observer& observer = {});
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,

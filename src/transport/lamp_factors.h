@@ -47,7 +47,7 @@ struct LampSampling {
 /// free, 0 if all are blocked; else formula (5) of docs/theory/occluded-form-factors.md. Each half uses a quarter of
 /// `rays` per pair, 16 at least, and four times as many if those of the **other** half disagree. The number does not
 /// depend on its own rays, so the estimate is unbiased. Standard errors are pooled over pairs with the same visible
-/// share. The same bits for any number of threads. \throws Cancelled.
+/// share. The same bits for any number of threads. \throws Canceled.
 LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
                          std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer = {});
 

@@ -120,7 +120,7 @@ struct TracedRows {
 /// Rows may be empty if a patch is covered or sees only sides without patches. If the occluder has specular polygons,
 /// rows are not scaled, and `lost` includes only lost rays without specular hits. O(size) time and memory. The same
 /// bits for any number of threads, also when `blocks` (null for none) returns blocks of an earlier identical call.
-/// \throws Cancelled, and the exceptions of the blocks.
+/// \throws Canceled, and the exceptions of the blocks.
 TracedRows trace_rows(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright,
                       const RayOptions& options, const Observer& observer = {}, const RowBlocks* blocks = nullptr);
 

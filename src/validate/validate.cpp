@@ -155,7 +155,7 @@ Eigen::MatrixXd error_between_groups(const ExchangeAreas& S, const PatchMesh& me
   return sum;
 }
 
-// Uses the front sides of the polygons. Throws Cancelled.
+// Uses the front sides of the polygons. Throws Canceled.
 GroupExchange group_exchange(const Scene& scene, double max_edge, const AssemblyOptions& options,
                              const Observer& observer) {
   const Scene repaired = repair(scene);
@@ -175,14 +175,14 @@ GroupExchange group_exchange(const Scene& scene, double max_edge, const Assembly
 }
 
 // The form factor from group 0 to group `to` where nothing can be hidden in part: the bar is that of the closed forms
-// and of quadrature. Throws Cancelled.
+// and of quadrature. Throws Canceled.
 Measured unoccluded_form_factor(const Scene& scene, double max_edge, std::uint32_t to, const Observer& observer) {
   const GroupExchange exchange = group_exchange(scene, max_edge, {}, observer);
   return {exchange.exchange_area(0, to) / exchange.area[0], exchange.error(0, to) / exchange.area[0], "quadrature"};
 }
 
 // The same where shadow rays decide: mean of runs with different seeds, and from their scatter its standard error.
-// Throws Cancelled.
+// Throws Canceled.
 Measured sampled_form_factor(const Scene& scene, double max_edge, std::uint32_t to, const Observer& observer) {
   double sum = 0;
   double sum_of_squares = 0;
@@ -536,7 +536,7 @@ std::vector<ValidationCase> validation_cases() {
 std::vector<ValidationResult> validate(std::span<const ValidationCase> cases, const Observer& observer) {
   std::vector<ValidationResult> results;
   for (const ValidationCase& one : cases) {
-    if (observer && !observer({.stage = Stage::form_factors})) throw Cancelled();
+    if (observer && !observer({.stage = Stage::form_factors})) throw Canceled();
     results.push_back({one.name, one.exact, one.source, one.measure(observer)});
   }
   return results;

@@ -39,7 +39,7 @@ bool within_bar(const ValidationResult& result);
 /// catalog is Howell, A Catalog of Radiation Heat Transfer Configuration Factors.
 std::vector<ValidationCase> validation_cases();
 
-/// Runs the cases in order. The same bits for any number of threads. \throws Cancelled.
+/// Runs the cases in order. The same bits for any number of threads. \throws Canceled.
 std::vector<ValidationResult> validate(std::span<const ValidationCase> cases, const Observer& observer = {});
 
 }  // namespace patchlight

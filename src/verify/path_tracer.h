@@ -50,16 +50,16 @@ struct PathEstimate {
 /// mirrors and sky are evaluated by code of its own. Kept sides reflect and emit as in simulate(); other sides are
 /// black. Shadow rays find luminaires and sun, also over chains of mirrors of any length. Scattered rays find the sky.
 /// The mean is over the part of a receiver that is not covered (docs/theory/radiosity-equation.md). The result does not
-/// depend on the number of threads. \throws Cancelled.
+/// depend on the number of threads. \throws Canceled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathReceiver> receivers,
                               const PathOptions& options = {}, const Observer& observer = {});
 
-/// The mean irradiance of regions, from points spread over their exposed area: one row per region. \throws Cancelled.
+/// The mean irradiance of regions, from points spread over their exposed area: one row per region. \throws Canceled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const PathRegion> regions,
                               const PathOptions& options = {}, const Observer& observer = {});
 
 /// Irradiance at points, by paths that start at each sensor over the hemisphere of its normal: one row per sensor. A
-/// sensor that lies on polygons is read just in front of the sides that it faces along. \throws Cancelled.
+/// sensor that lies on polygons is read just in front of the sides that it faces along. \throws Canceled.
 PathEstimate trace_irradiance(const Scene& scene, const KeptSides& sides, std::span<const Sensor> sensors,
                               const PathOptions& options = {}, const Observer& observer = {});
 

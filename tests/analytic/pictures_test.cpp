@@ -383,7 +383,7 @@ TEST(FinalPicture, WithoutTimeIsCancelled) {
   const Scene scene = test_room(0.5);
   const Simulation simulation = solved(scene, 400);
   EXPECT_THROW(take_picture(simulation, final_options(into_room(), 40), [](const Progress&) { return false; }),
-               Cancelled);
+               Canceled);
 }
 
 // A room without its wall at low x, under a sky.

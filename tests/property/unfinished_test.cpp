@@ -29,7 +29,7 @@ std::optional<Simulation> stopped_run(const Request& request, bool keeps, const 
   with.look = [&](const Simulation&) { ++solved; };
   try {
     return simulate(test_room(0.6), request, observer, with);
-  } catch (const Cancelled&) {
+  } catch (const Canceled&) {
     return std::nullopt;
   }
 }

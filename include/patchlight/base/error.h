@@ -25,9 +25,9 @@ class MemoryError : public std::runtime_error {
 };
 
 /// The observer asked to stop before there was a result.
-class Cancelled : public std::runtime_error {
+class Canceled : public std::runtime_error {
  public:
-  Cancelled() : std::runtime_error("cancelled") {}
+  Canceled() : std::runtime_error("canceled") {}
 };
 
 }  // namespace patchlight

@@ -44,7 +44,7 @@ struct Progress {
   const Iteration* iteration = nullptr;    ///< in Stage::solve, with each new iterate
   std::function<Field()> irradiance = {};  ///< with `iteration`: computes H_k, W/m^2, of the iterate B_k = E + rho o
                                            ///< H_k; 0 at first. Valid until the observer returns
-  const Field* ambient = nullptr;  ///< with `iteration` of progressive refinement: its Solution::ambient
+  const Field* ambient = nullptr;          ///< with `iteration` of progressive refinement: its Solution::ambient
 };
 
 /// Called during a stage, about ten times a second where its work is divided finely enough, and never from two threads

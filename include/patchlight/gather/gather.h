@@ -68,7 +68,7 @@ struct GatheredIrradiance {
 /// The errors of the patches are gathered like their light. Independent sampling errors add up in squares. Each draw of
 /// correlated errors adds up like light. Mesh errors and the solver's bounds add up linearly. If the mesh errors of the
 /// patches are unknown, the relative error of the reflected light is estimated from the residual of the planes, root
-/// mean square over all sensors. O(points x patches). \throws Cancelled.
+/// mean square over all sensors. O(points x patches). \throws Canceled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});

@@ -67,7 +67,7 @@ struct SolverOptions {
   bool patch_bounds = true;             ///< bound every patch also where kappa is below 1: more applications
   bool every_band = false;              ///< solve bands that follow from others, too
   bool keeps_unfinished = false;        ///< an observer that returns false ends the iterations with the last iterate,
-                                        ///< Solution::stopped, instead of throwing Cancelled
+                                        ///< Solution::stopped, instead of throwing Canceled
 };
 
 /// The relative error at which a solver with these options stops.
@@ -83,7 +83,7 @@ inline double tolerance_of(const SolverOptions& options) { return options.relati
 /// Without convergence it returns after max_iterations with converged = false and its history. For a singular system it
 /// returns at once, with Solution::trapped, unless the largest row sum is infinite.
 ///
-/// A transport that is not reciprocal has no kappa; the bound of every patch applies. \throws Cancelled; InputError,
+/// A transport that is not reciprocal has no kappa; the bound of every patch applies. \throws Canceled; InputError,
 /// before any work, if takes_rows() and the transport is no RowTransport, if takes_reciprocity() and the transport is
 /// not reciprocal, or if takes_diagonal() and there are sheets.
 Solution solve(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options = {},

@@ -100,7 +100,7 @@ struct KnownEntries {
 
 /// Computes the exchange areas of all pairs of patches, before closure. Symmetric by construction, zero on the diagonal
 /// and between patches of one plane. With the automatic estimator and Estimator::contour, never above the unoccluded
-/// value. The same bits for any number of threads. O(size^2) time. \throws Cancelled.
+/// value. The same bits for any number of threads. O(size^2) time. \throws Canceled.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options = {},
                                  const Observer& observer = {});
 

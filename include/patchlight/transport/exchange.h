@@ -28,12 +28,12 @@ struct Exchange {
 };
 
 /// The exchange for rows on demand: exchange areas have no patches, and row sums are empty. Areas follow from the lost
-/// shares alone. \throws Cancelled.
+/// shares alone. \throws Canceled.
 Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                             const Observer& observer = {});
 
 /// Computes the exchange areas before closure, and the share of each patch's hemisphere in which no patch is visible.
-/// \throws Cancelled.
+/// \throws Canceled.
 Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                         const Observer& observer = {});
 
@@ -46,7 +46,7 @@ bool weighs_by_errors(const LostShare& lost, PatchIndex patches);
 /// Closes the exchange areas: the smallest change that makes each row sum to the visible share of its patch. Areas that
 /// are already closed (Exchange::closure) stay. In a closed scene, storing closed rows as floats changes their sums by
 /// less than 3e-7 of the area. That change becomes their remainder, of either sign; rows with larger defects are closed
-/// again. \throws Cancelled.
+/// again. \throws Canceled.
 ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer = {});
 
 }  // namespace patchlight

@@ -47,7 +47,7 @@ Eigen::VectorXd expected_row_sum(const LostShare& lost);
 /// Measures the shares with stratified cosine-hemisphere rays that start spread over each patch. A ray that hits
 /// nothing is traced again from a place 1 % nearer to the patch's centroid and slightly behind its plane. So cracks
 /// between polygons, and faces in contact, do not count as openings. Where rays from one point hit backs, a face with
-/// another face against it counts as a back, too. \throws Cancelled.
+/// another face against it counts as a back, too. \throws Canceled.
 LostShare measure_lost_share(const PatchMesh& mesh, const Occluder& occluder, int rays_per_patch, std::uint64_t seed,
                              const Observer& observer = {});
 

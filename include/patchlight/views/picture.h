@@ -56,7 +56,7 @@ Field display_radiance(const Simulation& simulation);
 double exposure_of(const Simulation& simulation);
 
 /// A picture of a solved scene. `simulation` comes from simulate(). If the observer stops a final picture, the result
-/// is unfinished. \throws Cancelled if there is no picture yet; InputError for an invalid camera.
+/// is unfinished. \throws Canceled if there is no picture yet; InputError for an invalid camera.
 Picture take_picture(const Simulation& simulation, const PictureOptions& options = {}, const Observer& observer = {});
 
 /// A picture of a model without light: each point is as bright as its reflectance times its ambient occlusion
@@ -73,7 +73,7 @@ struct LightmapOptions {
 
 /// Bakes the light on all surfaces of a solved scene except clear ones, for real-time engines. Each texel is gathered
 /// like in a final picture. `simulation` comes from simulate(). Takes 44 bytes per texel with three bands. \throws
-/// Cancelled; InputError if there are more groups of coplanar faces than charts in the largest map.
+/// Canceled; InputError if there are more groups of coplanar faces than charts in the largest map.
 Lightmap bake_lightmap(const Simulation& simulation, const LightmapOptions& options = {},
                        const Observer& observer = {});
 

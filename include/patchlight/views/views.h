@@ -18,7 +18,7 @@ struct SensorView {
 };
 
 /// Reads the sensors of a solved scene at their places: light gathered from its patches, and straight from
-/// luminaires, sun and sky. `simulation` comes from simulate(). \throws Cancelled.
+/// luminaires, sun and sky. `simulation` comes from simulate(). \throws Canceled.
 SensorView read_sensors(const Simulation& simulation, const Observer& observer = {});
 
 /// The same for sensors at other places.
@@ -54,7 +54,7 @@ struct ObserverReading {
 
 /// The readings of observers in a solved scene. Sources of glare are windows and surfaces brighter than 500 cd/m^2 and
 /// than four times the mean of the visible half space. Measured luminaires glare by the sides of their luminous
-/// openings, with the luminance I / A_p. Lamps without extent give light, but no glare. \throws Cancelled.
+/// openings, with the luminance I / A_p. Lamps without extent give light, but no glare. \throws Canceled.
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,
                                             const Observer& observer = {});
 

@@ -350,7 +350,7 @@ void write_comparison(const fs::path& folder, const Scene& scene, const Comparis
     for (const Abscissa& abscissa : abscissas(comparison.simulation.mesh.size())) draw(in, scene, comparison, abscissa);
     for (std::size_t k = 0; k < comparison.runs.size(); ++k) {
       const double fraction = static_cast<double>(k) / static_cast<double>(comparison.runs.size());
-      if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
+      if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Canceled();
       const SolverRun& run = comparison.runs[k];
       if (run.frames.empty()) continue;
       write_frames(in / (name_of(run.contestant) + ".pvd"), scene, comparison.simulation, run, provenance, observer);

@@ -19,7 +19,7 @@ nlohmann::ordered_json comparison_json(const Scene& scene, const Comparison& com
 /// - both with the facts of the run (compare.json),
 /// - plots (.svg and .png) of the true error by iteration, by operator application and by second;
 /// - a ParaView series per solver (SOLVER.pvd), if frames were kept.
-/// docs/reference/outputs/studies.md describes them. \throws OutputError, Cancelled.
+/// docs/reference/outputs/studies.md describes them. \throws OutputError, Canceled.
 void write_comparison(const std::filesystem::path& folder, const Scene& scene, const Comparison& comparison,
                       const Provenance& provenance, const Observer& observer = {});
 

@@ -351,7 +351,7 @@ class LockedFolder {
  public:
   LockedFolder(const fs::path& folder, const Observer& observer) {
     while (!is_locked(folder)) {
-      if (observer && !observer({.stage = Stage::write})) throw Cancelled();
+      if (observer && !observer({.stage = Stage::write})) throw Canceled();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
@@ -434,7 +434,7 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
   if (lock.is_new()) unfinished.made.push_back(folder);
   for (std::size_t k = 0; k < iterates.size(); ++k) {
     const double fraction = static_cast<double>(k) / static_cast<double>(iterates.size());
-    if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Cancelled();
+    if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Canceled();
     const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
     add_values(*polygons->GetCellData(), simulation.problem, iterates[k].cast<double>(), exposed);
     add_facts(*polygons->GetFieldData(), scene, history[k], provenance);

@@ -33,7 +33,7 @@ using IterateIrradiance = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Ei
 /// Writes a time series for ParaView: FILE.pvd and, in the folder FILE_series beside it, one .vtp per iterate with
 /// radiance, irradiance and rgb, the iteration as its time. `iterates` has one entry per row of the solution's history.
 /// Everything is whole at any moment: the .pvd is replaced last and names new files only; those of an older series are
-/// removed after that. \throws OutputError, Cancelled; then the older series is still there.
+/// removed after that. \throws OutputError, Canceled; then the older series is still there.
 void write_series(const std::filesystem::path& pvd, const Scene& scene, const Simulation& simulation,
                   const std::vector<IterateIrradiance>& iterates, const Provenance& provenance,
                   const Observer& observer = {});

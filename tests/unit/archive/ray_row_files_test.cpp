@@ -106,9 +106,9 @@ TEST(RayRowFilesOfMirrors, AreOfTheSamePatchesAsASolution) {
   std::string hash;
   with.ray_exchange = [&](const PatchMesh& mesh) -> RayExchange {
     hash = geometry_hash(mesh);
-    throw Cancelled();
+    throw Canceled();
   };
-  EXPECT_THROW(simulate(scene, by_rays(), {}, with), Cancelled);
+  EXPECT_THROW(simulate(scene, by_rays(), {}, with), Canceled);
   EXPECT_EQ(hash, geometry_hash(found.mesh));
 }
 

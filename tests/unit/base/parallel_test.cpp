@@ -51,7 +51,7 @@ TEST(ParallelFor, StopsWhenTheObserverSaysSo) {
     ++calls;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
-  EXPECT_THROW(parallel_for(100000, Stage::solve, observer, body), Cancelled);
+  EXPECT_THROW(parallel_for(100000, Stage::solve, observer, body), Canceled);
   EXPECT_LT(calls, 100000);
 }
 

@@ -93,7 +93,7 @@ TEST(ReadIsolated, ASignalThatStopsTheProgramIsNoFaultOfTheFile) {
                                  raise(signal);
                                  return {};
                                }),
-                 Cancelled);
+                 Canceled);
 }
 
 TEST(ReadIsolated, MemoryIsLimited) {

@@ -37,9 +37,9 @@ TEST(WholeFile, StaysUntouchedWhenWritingFails) {
   EXPECT_THROW(write_whole_file(file,
                                 [](const fs::path& temporary) {
                                   put(temporary, "half");
-                                  throw Cancelled();
+                                  throw Canceled();
                                 }),
-               Cancelled);
+               Canceled);
   EXPECT_THROW(write_whole_file(file,
                                 [](const fs::path& temporary) {
                                   put(temporary, "half");

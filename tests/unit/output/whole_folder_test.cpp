@@ -33,9 +33,9 @@ TEST(WholeFolder, StaysUntouchedWhenWritingFails) {
   write_whole_folder(target, never, [](const fs::path& in) { put(in / "a", "old"); });
   const auto half = [](const fs::path& in) {
     put(in / "a", "half");
-    throw Cancelled();
+    throw Canceled();
   };
-  EXPECT_THROW(write_whole_folder(target, always, half), Cancelled);
+  EXPECT_THROW(write_whole_folder(target, always, half), Canceled);
   EXPECT_EQ(content_of(target / "a"), "old");
   EXPECT_EQ(folder.entries(), 1U);
 }

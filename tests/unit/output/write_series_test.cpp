@@ -107,7 +107,7 @@ TEST(WriteSeries, KeepsTheOlderSeriesWhenItFails) {
   write(pvd, 1);
   const std::string old = content_of(pvd);
   for (int files = 0; files < 2; ++files) {
-    EXPECT_THROW(write(pvd, 2, [files](const Progress& progress) { return 2 * progress.fraction < files; }), Cancelled);
+    EXPECT_THROW(write(pvd, 2, [files](const Progress& progress) { return 2 * progress.fraction < files; }), Canceled);
     EXPECT_EQ(content_of(pvd), old);
     EXPECT_EQ(files_in(series_folder(pvd)), 2U);
     for (const auto& [time, file] : named_by(pvd)) EXPECT_TRUE(fs::exists(file)) << file;
@@ -122,7 +122,7 @@ TEST(WriteSeries, KeepsTheOlderSeriesWhenItFails) {
 
 TEST(WriteSeries, LeavesNothingWhereNothingWas) {
   const TemporaryFolder folder;
-  EXPECT_THROW(write(folder.path() / "room.pvd", 1, [](const Progress&) { return false; }), Cancelled);
+  EXPECT_THROW(write(folder.path() / "room.pvd", 1, [](const Progress&) { return false; }), Canceled);
   EXPECT_EQ(folder.entries(), 0U);
 }
 

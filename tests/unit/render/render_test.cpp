@@ -169,7 +169,7 @@ TEST(Render, CanBeCancelled) {
   };
   EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, 1, 1), CornerWeights::Ones(1, 4)}, Occluder(scene),
                       camera_along_y(50), Vector::UnitZ(), {}, stop),
-               Cancelled);
+               Canceled);
 }
 
 // A box of 2 x 2 x 2 m, y up, without the side at z = 0, and a block in it. The view is through the opening.

@@ -231,7 +231,7 @@ TEST_P(EverySolver, StopsWhenTheObserverSaysSo) {
   const Observer observer = [](const Progress& progress) {
     return progress.iteration == nullptr || progress.iteration->number < 2;
   };
-  EXPECT_THROW(solve(*room.transport, room.problem, {.solver = GetParam()}, observer), Cancelled);
+  EXPECT_THROW(solve(*room.transport, room.problem, {.solver = GetParam()}, observer), Canceled);
 }
 
 // A run that stops after the second iterate returns this iterate or one further reflection of it. The observer receives

@@ -52,7 +52,7 @@ TEST(Validation, EveryCaseHasItsOwnNameAndASource) {
 
 TEST(Validation, CanBeStopped) {
   const std::vector<ValidationCase> cases{one_case(1, {1, 0, ""})};
-  EXPECT_THROW(validate(cases, [](const Progress&) { return false; }), Cancelled);
+  EXPECT_THROW(validate(cases, [](const Progress&) { return false; }), Canceled);
 }
 
 }  // namespace
