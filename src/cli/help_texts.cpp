@@ -285,7 +285,7 @@ constexpr CommandText commands[] = {
      "the "
      "glazing, and a sensor grid and a camera in each room. Edit the file, then solve it.",
      "# a scene with daylight and sensors\npatchlight init house.ifc -o house.toml\n"
-     "# a model in millimetres\npatchlight init room.obj --unit mm -o room.toml\n"
+     "# a model in millimeters\npatchlight init room.obj --unit mm -o room.toml\n"
      "# several files form one scene\npatchlight init walls.obj desks.obj -o office.toml\n"},
     {"solve", start, "Compute the light on all surfaces of a model", "MODEL... -o RESULT.vtp [OPTIONS]",
      "Divides the surfaces into patches, computes the form factors between them and solves for the light that the "

@@ -241,7 +241,7 @@ void write_hdr(const std::filesystem::path& file, const Picture& picture, const 
   std::string bytes = "#?RADIANCE\nSOFTWARE= patchlight " + std::string(version()) + '\n';
   bytes += view_line(picture.camera, up, image);
   if (picture.unfinished) bytes += "COMMENT= unfinished\n";
-  bytes += "PRIMARIES= .64 .33 .3 .6 .15 .06 .3127 .329\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n";
+  bytes += "PRIMARIES= 0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\nEXPOSURE=1\nFORMAT=32-bit_rle_rgbe\n\n";
   bytes += "-Y " + std::to_string(image.height) + " +X " + std::to_string(image.width) + '\n';
   // Scanlines of other widths are not run-length encoded.
   const bool has_runs = image.width >= 8 && image.width <= 32767;
