@@ -1,5 +1,5 @@
 cmake_minimum_required(VERSION 3.25)
-# Writes the source file that has the page in it: the page's own files as one HTML text, with the licence of three.js,
+# Writes the source file that has the page in it: the page's own files as one HTML text, with the license of three.js,
 # and three.js with its controls as another text.
 # usage: cmake -D WEB=src/page/web -D THREE=/usr/share/javascript/three -D COPYRIGHT=/usr/share/doc/libjs-three/copyright -D OUTPUT=FILE.cpp -P page.cmake
 
@@ -14,7 +14,7 @@ foreach(name numbers elements arrays colours charts geometry model inspector wal
   string(APPEND script "${part}\n")
 endforeach()
 
-# The text of the licence stands at the end of Debian's file about it.
+# The text of the license is at the end of Debian's file about it.
 string(FIND "${copyright}" "License: Expat\n Permission" start REVERSE)
 if(start EQUAL -1)
   message(FATAL_ERROR "${COPYRIGHT}: found no text of the Expat licence; expected that of three.js")

@@ -249,9 +249,12 @@ def turned(x, y, z):
 
 
 def write_seams(folder):
-    """A closed room in which each surface that can be seen has the same radiance, whatever it is made of: floor and
-    ceiling in parts whose edges do not meet those of the walls, a rug on the floor, which is smaller than each of its parts, a panel that stands there twice,
-    a block on the floor, and an outer skin in the planes of the walls."""
+    """A closed room in which all visible surfaces have the same radiance.
+
+    The parts of floor and ceiling have edges that do not meet those of the walls. A rug on the floor is smaller than
+    each of its parts. Two equal panels coincide, a block stands on the floor, and an outer skin lies in the planes of
+    the walls.
+    """
     lit, other = [], []
     for x, y, far_x, far_y in ((0, 0, 2.3, 4), (2.3, 0, 5, 1.7), (2.3, 1.7, 5, 4)):
         lit.append([(x, y, 0), (far_x, y, 0), (far_x, far_y, 0), (x, far_y, 0)])

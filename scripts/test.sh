@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs missing packages, builds patchlight and runs every test. Safe to run again.
-# usage: scripts/test.sh [PRESET]    a preset of CMakePresets.json; default: checked, which is optimised and has asserts.
+# usage: scripts/test.sh [PRESET]    a preset of CMakePresets.json; default: checked, which is optimized and has asserts.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -18,7 +18,7 @@ using namespace test;
 
 KeptSides fronts(const Scene& scene) { return kept_sides(scene, Sides::front); }
 
-// Form factor between the first two polygons of a scene, subdivided to patches of this edge.
+// Form factor between the first two polygons of a scene, cut into patches with this edge.
 double polygon_form_factor(const Scene& scene, double max_edge) {
   const PatchMesh mesh = tessellate(scene, fronts(scene), max_edge);
   const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
@@ -34,8 +34,8 @@ double polygon_form_factor(const Scene& scene, double max_edge) {
   return exchange / area;
 }
 
-// Unit squares: Howell's catalogue C-11 and C-14, evaluated to 16 digits. The tolerance is a tenth of what is promised;
-// float storage alone is good to 1e-7.
+// Unit squares: Howell's catalog, C-11 and C-14, to 16 digits. The tolerance is a tenth of the guaranteed error; float
+// storage alone is good to 1e-7.
 TEST(FormFactors, OpposedUnitSquares) {
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)});
@@ -53,19 +53,19 @@ TEST(FormFactors, UnitSquaresSharingAnEdge) {
 }
 
 TEST(FormFactors, HalfHiddenByATriangle) {
-  // A right triangle half way between two opposed unit squares covers exactly one of the halves into which the
-  // symmetric plane x = y cuts the pair: by symmetry under the half turn about the middle line it hides one half.
+  // A right triangle halfway between two opposed unit squares covers exactly one side of the symmetry plane x = y of
+  // the pair. It hides one half, by symmetry under a half turn about the middle line.
   Scene scene = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)});
   scene = with_polygon(std::move(scene), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5)});
-  // 100 x 100 pairs; a tenth of them is partly hidden, with errors of some 10 % each: 0.1 * 0.1 / sqrt(1000) of the
+  // 100 x 100 pairs, a tenth of which are partly hidden with errors of about 10 % each: 0.1 * 0.1 / sqrt(1000) of the
   // whole.
   EXPECT_NEAR(polygon_form_factor(scene, 0.1), 0.5 * 0.19982489569838732, 1e-3 * 0.2);
 }
 
-// Unit squares that share an edge, a patch each: 256 rays find the lost share to 2 %, the closed form is exact. In the
-// second scene rays decide other pairs, of squares below the floor and behind the wall, which take nothing away from
-// that. In metres and millimetres, and turned.
+// Unit squares that share an edge, one patch each: 256 rays measure the lost fraction to 2 %, and the closed form is
+// exact. The second scene adds squares below the floor and behind the wall. Rays decide their pairs, which must not
+// affect the first pair. The scenes are in meters and millimeters, and turned.
 TEST(FormFactors, ClosureOfAnOpenSceneKeepsExactOnes) {
   Scene squares = with_quad(empty_scene({grey(0.5)}), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   squares = with_quad(std::move(squares), {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 1), Point(0, 0, 1)});
@@ -89,7 +89,7 @@ TEST(FormFactors, ClosureOfAnOpenSceneKeepsExactOnes) {
   }
 }
 
-// A closed room of one material with E = 1 - rho has B = 1 everywhere, whatever its shape: B = E + rho B. The stopping
+// A closed room of one material with E = 1 - rho has B = 1 everywhere for any shape, as B = E + rho B. The stopping
 // rule bounds the error by 1e-7, and closure makes row sums exact to 1e-10.
 class Furnace : public testing::TestWithParam<double> {};
 
@@ -111,9 +111,9 @@ TEST_P(Furnace, RadiosityIsOneEverywhere) {
 INSTANTIATE_TEST_SUITE_P(Reflectances, Furnace, testing::Values(0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99));
 
 TEST(Simulate, IrradianceBelowASmallLampFollowsTheClosedForm) {
-  // A black floor under a lamp with no other surface: H = E F(point, lamp) with Lambert's formula; here at the floor's
-  // centre below the lamp's centre, four times the corner configuration of Howell B-3. The floor's patches have edges
-  // of 0.05 m at distance 1 m: their mean differs from the value at the centre by (h/d)^2/24 * 8 = 1e-3.
+  // A black floor under a lamp, without other surfaces: H = E F(point, lamp) by Lambert's formula. At the floor's
+  // center below the center of the lamp, F is four times the corner configuration of Howell B-3. The floor's patches
+  // have edges of 0.05 m at distance 1 m; their mean differs from the center value by (h/d)^2/24 * 8 = 1e-3.
   Scene scene = empty_scene({grey(0), grey(0, 7)});
   scene = with_quad(std::move(scene), {Point(-1, -1, 0), Point(1, -1, 0), Point(1, 1, 0), Point(-1, 1, 0)});
   scene = with_quad(std::move(scene), {Point(-.2, -.2, 1), Point(-.2, .2, 1), Point(.2, .2, 1), Point(.2, -.2, 1)}, 1);

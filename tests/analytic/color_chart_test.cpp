@@ -1,4 +1,4 @@
-// The colour chart, whose colours under D65 are known from its spectra by sums over wavelengths.
+// The color chart: sums over its spectra give the reference colors under D65.
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
@@ -19,7 +19,7 @@ struct FieldOfChart {
   double Y, x, y;
 };
 
-// Of Ohta 1997, by sums every 5 nm from 380 to 780 with the CIE 1931 observer; rounded to four digits.
+// Spectra of Ohta 1997, summed every 5 nm from 380 to 780 nm with the CIE 1931 observer; rounded to four digits.
 constexpr std::array<FieldOfChart, 4> expected = {{{"red", 0.1183, 0.5423, 0.3179},
                                                    {"blue", 0.0623, 0.1884, 0.1395},
                                                    {"green", 0.2357, 0.3047, 0.4953},
@@ -31,7 +31,7 @@ Scene chart(Eigen::Index bands) {
   return read_scene(mesh_folder() / "color_chart_d65.toml", options);
 }
 
-// Without interreflection a patch sends rho o H / pi of the lamp's light H, of which a white one sends H / pi.
+// Without interreflection a patch emits rho o H / pi of the lamp's light H, and a white patch H / pi.
 TEST(ColorChart, FieldsUnderD65WithoutInterreflectionHaveTheirColours) {
   const Scene scene = chart(81);
   Request request;
@@ -59,7 +59,7 @@ TEST(ColorChart, FieldsUnderD65WithoutInterreflectionHaveTheirColours) {
   }
 }
 
-// What colour_error() bounds is what a solution is off by: light of many reflections, fine bands against few.
+// colour_error() bounds the true error: light after many reflections, fine bands against few.
 TEST(ColorChart, ErrorsOfFewBandsAreBelowTheirBound) {
   Request request;
   request.mesh.patches = 400;

@@ -27,7 +27,7 @@ Simulation solved_with_edge(const Scene& scene, double edge, bool with_error_bar
 // H of texels, W/m^2, in the first band.
 Eigen::ArrayXd irradiance_of(const Lightmap& map) { return (map.direct + map.indirect).col(0).cast<double>(); }
 
-// H = E / (1 - rho) in a closed room of one material, and the radiance is that over pi; around charts as well.
+// H = E / (1 - rho) in a closed room of one material, also in the margins around charts.
 TEST(Lightmap, OfAFurnaceIsTheSameEverywhere) {
   const Scene scene = with_box(empty_scene({grey(0.5, 3)}), Point(0, 0, 0), Point(2, 1, 1), true);
   const Lightmap map = bake_lightmap(solved_with_edge(scene, 0.125), {.texel = 0.25});
@@ -36,7 +36,7 @@ TEST(Lightmap, OfAFurnaceIsTheSameEverywhere) {
     for (int y = chart.top - 2; y < chart.top + chart.height + 2; ++y) {
       for (int x = chart.left - 2; x < chart.left + chart.width + 2; ++x) {
         const Eigen::Index texel = static_cast<Eigen::Index>(y) * map.width + x;
-        // Half a per cent for the solution's form factors.
+        // Half a percent for the form factors of the solution.
         EXPECT_NEAR(map.direct(texel, 0) + map.indirect(texel, 0), 6, 0.03);
         EXPECT_NEAR(map.radiance(texel, 0), 6 / std::numbers::pi, 0.03 / std::numbers::pi);
       }
@@ -44,8 +44,8 @@ TEST(Lightmap, OfAFurnaceIsTheSameEverywhere) {
   }
 }
 
-// Flux arrives on a patch as the solution has it: the texels' mean times the area. The patches of the room are whole
-// texels.
+// The mean over texels times the area equals the flux that the solution has on a patch. The patches of the room are
+// whole texels.
 TEST(Lightmap, HasTheFluxOfTheSolution) {
   Scene scene = empty_scene({grey(0.5), grey(0, 40)});
   for (const Quad& face : box_faces(Point(0, 0, 0), Point(2, 1.5, 1), true)) scene = with_quad(std::move(scene), face);
@@ -78,7 +78,7 @@ TEST(Lightmap, HasTheFluxOfTheSolution) {
 }
 
 double interpolated(const Lightmap& map, const LightmapChart& chart, const Point& point) {
-  // The middles of texels lie at halves.
+  // Texel centers are at half-integers.
   const double x = chart.left + chart.right.dot(point - chart.corner) / chart.texel[0] - 0.5;
   const double y = chart.top + chart.down.dot(point - chart.corner) / chart.texel[1] - 0.5;
   const auto left = static_cast<Eigen::Index>(std::floor(x)), top = static_cast<Eigen::Index>(std::floor(y));
@@ -91,7 +91,7 @@ double interpolated(const Lightmap& map, const LightmapChart& chart, const Point
          v * ((1 - u) * at(left, top + 1) + u * at(left + 1, top + 1));
 }
 
-// A floor of two materials that reflect alike, which meet at x = 2.37 m.
+// A floor of two materials with equal reflectance that meet at x = 2.37 m.
 constexpr double seam = 2.37;
 
 Scene room_with_two_floors() {
@@ -125,7 +125,7 @@ double bar_at_seam(const Simulation& simulation) {
   return bar / patches;
 }
 
-// Where light has no step, what viewers interpolate on both sides of a seam differs by less than the error bars there.
+// If the light is continuous, the values interpolated on both sides of a seam differ by less than the error bars there.
 TEST(Lightmap, HasNoSeamBetweenCoplanarCharts) {
   const Scene scene = room_with_two_floors();
   const Simulation simulation = solved_with_edge(scene, 0.25, true);
@@ -145,7 +145,7 @@ TEST(Lightmap, HasNoSeamBetweenCoplanarCharts) {
   EXPECT_LT(worst, 3 * bar);
 }
 
-// Behind a wall without thickness on the seam it is dark, and stays so up to the wall.
+// The area behind a wall without thickness on the seam is dark, up to the wall.
 TEST(Lightmap, LeaksNothingUnderAWallOnASeam) {
   Scene scene = room_with_two_floors();
   scene =
@@ -158,7 +158,7 @@ TEST(Lightmap, LeaksNothingUnderAWallOnASeam) {
   EXPECT_EQ(interpolated(map, dark, point), 0);
 }
 
-// Under a solid wall in the middle of a chart it is dark, and none of that is interpolated into what shows beside it.
+// The area under a solid wall in the middle of a chart is dark, and interpolation must not spread it to visible texels.
 TEST(Lightmap, IsNotDarkBesideAWallInTheMiddleOfAChart) {
   const Scene scene = with_box(furnished_room(0.5), Point(1.98, 0.4, 0), Point(2.17, 2.6, 1.2), false);
   Request request;
@@ -190,7 +190,7 @@ TEST(Lightmap, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((maps[0].radiance == maps[1].radiance).all());
 }
 
-// A chart that is narrower than a quarter of a texel has light nevertheless.
+// A chart narrower than a quarter of a texel still has light.
 TEST(Lightmap, OfASliverIsNotBlack) {
   Scene scene = with_box(empty_scene({grey(0.5, 3)}), Point(0, 0, 0), Point(2, 1, 1), true);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0.3), Point(1.5, 0.51, 0.6), false);

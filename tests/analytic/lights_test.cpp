@@ -14,9 +14,9 @@
 #include <numbers>
 #include <string>
 
-// Light of luminaires and of the sun against closed forms, among them those of CIE 171:2006, Test cases to assess the
-// accuracy of lighting computer programs. Its tables are rounded to four figures; the numbers here are the closed forms
-// themselves, which differ from the tables by up to 0.22 %.
+// Light of luminaires and the sun against closed forms, including those of CIE 171:2006, Test cases to assess the
+// accuracy of lighting computer programs. Its tables are rounded to four figures. The numbers here are the exact closed
+// forms, which differ from the tables by up to 0.22 %.
 namespace patchlight::lights_test {
 namespace {
 
@@ -64,8 +64,8 @@ std::string lambertian_file() {
 }
 
 TEST(Cie171, Case52LambertianLuminaireAboveAFloor) {
-  // Lambertian point source of 1000 cd, 3 m above the floor: E = I0 h^2 / d^4. Linear interpolation over a degree is
-  // 4e-5 too low at most.
+  // Lambertian point source of 1000 cd, 3 m above the floor: E = I0 h^2 / d^4. Linear interpolation over one degree is
+  // at most 4e-5 too low.
   Scene scene = floor_of(3);
   Luminaire lamp;
   lamp.position = Point(0, 0, 3);
@@ -90,9 +90,9 @@ TEST(Cie171, Case52LambertianLuminaireAboveAFloor) {
 }
 
 TEST(Cie171, Case56LightReflectedByAnEvenlyLitFloor) {
-  // A floor of 4 x 4 m under the sun at the zenith reflects all of it evenly: E / (E_horizontal rho) is the form factor
-  // from a point of the wall y = 0 (B to F) or of the ceiling z = 3 m (G to N) to the floor, in percent. From the sun
-  // over the floor's radiosity to the sensors nothing is sampled but visibility, which is complete.
+  // A floor of 4 x 4 m under the sun at the zenith is uniformly bright. E / (E_horizontal rho) is the form factor in
+  // percent from a point of the wall y = 0 (B to F) or of the ceiling z = 3 m (G to N) to the floor. Only visibility is
+  // sampled, and it is complete.
   Scene scene = with_quad(empty_scene({grey(0.3)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   scene.sun = Sun{Vector::UnitZ(), watts(50000)};
   Request request;
@@ -127,9 +127,9 @@ TEST(Cie171, Case56LightReflectedByAnEvenlyLitFloor) {
 class Case58 : public testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(Case58, IndirectLightInAClosedCube) {
-  // 4 m cube, isotropic 10,000 lm in its middle: the mean indirect illuminance of all faces is rho Phi / (S (1 - rho)),
-  // S = 96 m^2. Closure makes the rows sum up to 1, so that the sampled direct light is what is left of the error: all
-  // patches see the lamp, and 64 points of each give its mean to well below 0.1 %.
+  // A 4 m cube with an isotropic source of 10,000 lm in its middle. The mean indirect illuminance of all faces is rho
+  // Phi / (S (1 - rho)), S = 96 m^2. Closure makes row sums exact, so the error is that of the sampled direct light.
+  // All patches see the lamp, and 64 points on each give its mean to well below 0.1 %.
   const auto [rho, expected] = GetParam();
   Scene scene = with_box(empty_scene({grey(rho)}), Point(-2, -2, -2), Point(2, 2, 2), true);
   scene.luminaires = {isotropic(Point::Zero(), 10000)};
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(Cie171, Case58,
                                          std::pair(0.95, 1979.16667)));
 
 TEST(SpotLuminaire, LightsAFloorByItsProfile) {
-  // On the axis I / h^2, at the beam's half angle half of I cos^3 / h^2; nothing of 1000 cd is left at the far end.
+  // On the axis I / h^2, at the beam's half angle half of I cos^3 / h^2; none of the 1000 cd reaches the far end.
   Scene scene = floor_of(20);
   Luminaire lamp;
   lamp.position = Point(0, 0, 2);
@@ -163,7 +163,7 @@ TEST(SpotLuminaire, LightsAFloorByItsProfile) {
 }
 
 TEST(Simulate, FluxOfALuminaireInAClosedRoomIsAbsorbed) {
-  // Theorem: absorbed = arriving in a closed room, whatever stands in it; and all of the lamp's flux arrives.
+  // Theorem: absorbed flux equals arriving flux in a closed room with any contents, and all flux of the lamp arrives.
   Scene scene = furnished_room(0.5, 0);
   scene.luminaires = {isotropic(Point(3.2, 2.2, 1.9), 1000)};
   Request request;
@@ -171,7 +171,7 @@ TEST(Simulate, FluxOfALuminaireInAClosedRoomIsAbsorbed) {
   const Simulation simulation = simulate(scene, request);
   const EnergyBalance& balance = simulation.balance;
   EXPECT_EQ(balance.emitted[0], 0);
-  // Shadows' edges are sampled: 0.5 % is three times the standard error, which the next line bounds.
+  // Shadow edges are sampled: 0.5 % is three times the standard error, which the next line bounds.
   EXPECT_NEAR(luminous_efficacy * balance.arriving[0], 1000, 5);
   const double error =
       std::sqrt((simulation.direct_standard_error.col(0) * simulation.problem.area.array()).square().sum());

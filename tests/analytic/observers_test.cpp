@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-// What someone sees who stands in a room.
+// The view of an observer who stands in a room: glare and illuminance at the eye.
 namespace patchlight::observers_test {
 namespace {
 
@@ -30,9 +30,9 @@ Simulation solved(const Scene& scene, std::size_t patches) {
 }
 
 TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
-  // A room of 6 x 4 x 3 m with two luminous squares of 0.6 m in its ceiling, 3,000 cd/m^2 each, seen from 1.2 m. By
-  // hand: omega of each by its two triangles as seen from the eye, p at its middle by Guth's formula, and the
-  // background from the illuminance at the eye less what the squares themselves give: pi L F.
+  // A room of 6 x 4 x 3 m with two luminous squares of 0.6 m in its ceiling, 3,000 cd/m^2 each, seen from 1.2 m. The
+  // reference computes omega of each square by its two triangles and p at its middle by Guth's formula. The background
+  // is the illuminance at the eye less the squares' own: pi L F.
   Scene scene = empty_scene({grey(0.6), grey(0.6, 3000 * pi / luminous_efficacy)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(6, 4, 3), true);
   std::vector<Quad> squares;
@@ -50,7 +50,7 @@ TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
     const double omega = SphericalTriangle(camera.eye, {square[0], square[1], square[2]}).solid_angle() +
                          SphericalTriangle(camera.eye, {square[0], square[2], square[3]}).solid_angle();
     const Vector way = ((square[0] + square[2]) / 2 - camera.eye).normalized();
-    // It lies straight above the line of sight: tau = 0, so p = exp(33.98e-3 sigma + 21e-5 sigma^2).
+    // The square is straight above the line of sight: tau = 0, so p = exp(33.98e-3 sigma + 21e-5 sigma^2).
     const double sigma = std::acos(way.x()) * 180 / pi;
     const double p = std::exp(33.98e-3 * sigma + 21e-5 * sigma * sigma);
     sum += 3000.0 * 3000 * omega / (p * p);
@@ -62,8 +62,8 @@ TEST(Observers, HaveTheUnifiedGlareRatingOfCie117) {
 }
 
 TEST(Observers, HaveTheCylindricalIlluminanceOfAPointOfLight) {
-  // Black walls: E_v = I cos(g) / d^2 at the altitude g facing it, and on a plane turned by a from there cos(a) of it,
-  // where that is above 0. The mean over all a is 1 / pi.
+  // Black walls: E_v = I cos(g) / d^2 at the altitude g toward the lamp. A plane turned by a gets cos(a) of it, if
+  // positive. The mean over all a is 1 / pi.
   Scene scene = with_box(empty_scene({grey(0)}), Point(-5, -5, 0), Point(5, 5, 4), true);
   Luminaire lamp;
   lamp.position = Point(1.1, 2.3, 3.1);
@@ -91,8 +91,8 @@ std::shared_ptr<PhotometricWeb> glowing_square() {
 }
 
 TEST(Observers, SeeLuminairesAsTheirLuminousOpenings) {
-  // The room of the two luminous squares with measured luminaires in their place, worked out as CIE 117 does: L = I /
-  // A_p, omega = A_p / d^2, p at the middle; E at the eye straight from them is I cos / d^2.
+  // The same room with measured luminaires instead of the squares, computed as in CIE 117: L = I / A_p, omega = A_p /
+  // d^2, p at the middle. The direct E at the eye is I cos / d^2.
   Scene scene = with_box(empty_scene({grey(0.6)}), Point(0, 0, 0), Point(6, 4, 3), true);
   const Camera camera{Point(0.5, 2, 1.2), Point(5, 2, 1.2), 50, "desk"};
   double sum = 0, straight = 0;
@@ -115,7 +115,7 @@ TEST(Observers, SeeLuminairesAsTheirLuminousOpenings) {
   EXPECT_NEAR(found.background_luminance, background, 0.02 * background);
   EXPECT_NEAR(*found.unified_glare_rating, 8 * std::log10(0.25 / background * sum), 0.1);
 
-  // Behind a board before one of them there is the other alone.
+  // A board in front of one luminaire leaves the other alone visible.
   Scene behind = scene;
   behind = with_quad(std::move(behind), {Point(2, 1, 2.9), Point(2, 3, 2.9), Point(3.6, 3, 2.9), Point(3.6, 1, 2.9)});
   const ObserverReading half = read_observers(solved(behind, 2000), {camera})[0];
@@ -127,7 +127,7 @@ TEST(Observers, SeeLuminairesAsTheirLuminousOpenings) {
 }
 
 TEST(DefaultView, StandsInsideTheRoomWithMostLight) {
-  // Two closed rooms side by side; the lamp hangs in either, and the larger one is the other one.
+  // Two closed rooms side by side. The lamp hangs in either, and the other room is larger.
   for (const double lamp_x : {2.0, 9.0}) {
     Scene scene = with_box(empty_scene({grey(0.5), grey(0, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
     scene = with_box(std::move(scene), Point(6, 0, 0), Point(12, 5, 3), true);

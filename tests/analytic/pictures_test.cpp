@@ -34,7 +34,7 @@ Simulation solved(const Scene& scene, std::size_t patches, Storage storage = Sto
   return simulate(scene, request);
 }
 
-// Into the test room, from a corner.
+// A view of the test room from a corner.
 Camera into_room() { return {Point(0.3, 0.3, 1.6), Point(3, 2.2, 0.9), 60}; }
 
 PictureOptions final_options(const Camera& camera, int edge, double error = 0.02) {
@@ -53,7 +53,7 @@ TEST(FinalPicture, OfAFurnaceHasTheSameRadianceEverywhere) {
       take_picture(solved(scene, 600), final_options({Point(0.2, 0.4, 0.3), Point(2, 0.6, 0.6), 80}, 40));
   const Eigen::ArrayXd values = luminances(picture).array();
   const double expected = luminous_efficacy * 6 / pi;
-  // Half a per cent for the solution's form factors.
+  // Half a percent for the form factors of the solution.
   EXPECT_LT(((values - expected).abs() - 4 * picture.radiance.error.array()).maxCoeff(), 0.005 * expected);
   EXPECT_NEAR(values.mean(), expected, 0.005 * expected);
 }
@@ -63,7 +63,7 @@ TEST(FinalPicture, IsLinearInTheEmission) {
   const Picture first = take_picture(solved(scene, 500), final_options(into_room(), 24));
   for (Material& material : scene.materials) material.exitance *= 4;
   const Picture second = take_picture(solved(scene, 500), final_options(into_room(), 24));
-  // A power of two changes no rounding of the picture; the solver stops by relative errors.
+  // A power of two does not change the rounding of the picture, and the solver stops by relative errors.
   EXPECT_LT((second.radiance.pixels - 4 * first.radiance.pixels).abs().maxCoeff(),
             1e-5 * second.radiance.pixels.maxCoeff());
 }
@@ -87,7 +87,7 @@ TEST(FinalPicture, HidesTheMesh) {
       luminances(take_picture(solved(scene, 400), final_options(into_room(), 64, 0.01))).array();
   const Eigen::ArrayXd fine =
       luminances(take_picture(solved(scene, 6000), final_options(into_room(), 64, 0.01))).array();
-  // Lamps are so much brighter than all else that they would decide the mean.
+  // Lamps are so much brighter than the rest that they would dominate the mean.
   const double mean = fine.min(2 * fine.mean()).mean();
   EXPECT_LT(std::sqrt((coarse - fine).square().mean()), 0.02 * mean);
 }
@@ -108,7 +108,7 @@ TEST(FinalPicture, ErrorsCoverWhatSeedsDiffer) {
     const Eigen::ArrayXd error = picture.radiance.error.array();
     beyond += ((luminances(picture).array() - mean).abs() > 2 * error).cast<double>().mean() / seeds;
   }
-  // One in twenty of a normal distribution; errors are pooled from a few samples.
+  // One in twenty for a normal distribution; the errors are pooled from a few samples.
   EXPECT_LT(beyond, 0.1);
 }
 
@@ -121,13 +121,13 @@ TEST(FinalPicture, OfAFisheyeIntegratesToTheIrradianceOfASensor) {
   Camera camera{sensor.point, sensor.point + sensor.normal, 180};
   camera.projection = Projection::hemispherical;
   const Picture picture = take_picture(simulation, final_options(camera, 200));
-  // E = int L cos dw = pi times the mean over the disc, whose area is pi / 4 of the picture's.
+  // E = int L cos dw is pi times the mean over the disc, whose area is pi / 4 of the picture.
   const double found = picture.radiance.pixels.col(0).mean() * 4;
   EXPECT_NEAR(found, expected, 0.01 * expected);
 }
 
 TEST(FinalPicture, OfAMirrorIsThatFromTheMirroredEye) {
-  // A box with a lamp as its ceiling's middle, and a mirror for its wall at x = 4.
+  // A box with a lamp in the middle of its ceiling, and a mirror as its wall at x = 4.
   Scene scene = empty_scene({grey(0.5), grey(0.5, 10), grey(0)});
   scene.materials[2].specular_reflectance = Spectrum::Constant(1, 0.8);
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -151,14 +151,14 @@ TEST(FinalPicture, OfAMirrorIsThatFromTheMirroredEye) {
     }
   }
   EXPECT_GT(straight.mean(), 0);
-  // What is less than a thousandth of the mean is rounding of paths.
+  // Values below a thousandth of the mean are rounding of paths.
   EXPECT_LT(std::sqrt(square), 1.5 * std::sqrt(errors) + 1e-3 * straight.mean() * edge);
 }
 
 TEST(FinalPicture, AgreesWithPathTracing) {
   const Scene scene = test_room(0.5);
   const Simulation simulation = solved(scene, 2000);
-  // A square of the floor as an orthographic picture of just that.
+  // A square of the floor, seen by an orthographic camera that covers exactly the square.
   const std::array<Point, 4> square = {Point(1, 0.1, 0), Point(1.4, 0.1, 0), Point(1.4, 0.5, 0), Point(1, 0.5, 0)};
   Camera camera{Point(1.2, 0.3, 0.05), Point(1.2, 0.3, 0)};
   camera.projection = Projection::orthographic;
@@ -178,8 +178,8 @@ Camera above_floor(const Point& middle, double edge) {
   return camera;
 }
 
-// The irradiance of a floor of reflectance 0.5 by what its pixels show, against that of a function of the place. Pixels
-// count as their errors say: on the mean the squares of differences over squares of errors are 1.
+// Compares the irradiance of a floor of reflectance 0.5, from its pixels, with a function of the place. Pixels are
+// weighted by their errors: the mean of squared difference over squared error is 1.
 template <class Irradiance>
 void expect_irradiance(const Picture& picture, const Irradiance& irradiance) {
   const Image& image = picture.radiance;
@@ -187,7 +187,7 @@ void expect_irradiance(const Picture& picture, const Irradiance& irradiance) {
   double found = 0, expected = 0, square = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      // y is up in pictures from above, x to the right.
+      // In pictures from above, y points up and x to the right.
       const Point place =
           picture.camera.target + step * Vector(x + 0.5 - 0.5 * image.width, 0.5 * image.height - y - 0.5, 0);
       const double wanted = 0.5 / pi * irradiance(place);
@@ -200,11 +200,11 @@ void expect_irradiance(const Picture& picture, const Irradiance& irradiance) {
     }
   }
   EXPECT_NEAR(found, expected, 0.003 * expected);
-  // Errors are pooled from a few samples of a pixel and its neighbours.
+  // Errors are pooled from a few samples of a pixel and its neighbors.
   EXPECT_LT(square, 2);
 }
 
-// Seen from above, a floor of 4 x 4 m around the origin.
+// A floor of 4 x 4 m around the origin, seen from above.
 Scene lonely_floor() {
   Scene scene = empty_scene({grey(0.5), grey(0, 10), grey(0)});
   return with_quad(std::move(scene), {Point(-2, -2, 0), Point(2, -2, 0), Point(2, 2, 0), Point(-2, 2, 0)});
@@ -235,7 +235,7 @@ TEST(FinalPicture, OfManyLuminairesHasTheirClosedForm) {
     scene.luminaires.push_back(luminaire);
   }
   const Picture picture = take_picture(solved(scene, 300), final_options(above_floor({0.1, 0, 0}, 1.5), 48));
-  // I cos / r^2 of each
+  // I cos / r^2 for each luminaire.
   expect_irradiance(picture, [&](const Point& place) {
     double sum = 0;
     for (int k = 0; k < 6; ++k) {
@@ -256,17 +256,18 @@ TEST(FinalPicture, ShowsShadowsOfTheSunAtTheirPlaces) {
   const double step = 1.6 / 80;
   for (int y = 0; y < 80; ++y) {
     for (int x = 0; x < 80; ++x) {
-      // Where the ray to the sun is as high as the square, how far outside of it that is.
+      // The distance between the edge of the square and the ray to the sun at the height of the square, positive
+      // outside.
       const Point place(-0.4 + step * (x + 0.5 - 40), step * (39.5 - y), 0);
       const double outside = std::max(std::abs(place.x() + 0.5), std::abs(place.y() + 0.25)) - 0.5;
-      if (std::abs(outside) < step) continue;  // a pixel that the edge crosses under its filter
+      if (std::abs(outside) < step) continue;  // the edge lies within the pixel's filter
       const double expected = outside > 0 ? 0.5 / pi * 40 * to_sun.z() : 0;
       EXPECT_NEAR(picture.radiance.pixels(y * 80 + x, 0), expected, 1e-9) << x << ' ' << y;
     }
   }
 }
 
-// A box of 3 x 3 x 2 m, black but for its floor, whose lid has a hole of 0.6 x 0.5 m.
+// A black box of 3 x 3 x 2 m with a reflecting floor. The lid has a hole of 0.6 x 0.5 m.
 Scene box_with_hole(Quad& hole) {
   Scene scene = empty_scene({grey(0.5), grey(0)});
   const std::vector<Quad> faces = box_faces(Point(-1.5, -1.5, 0), Point(1.5, 1.5, 2), true);
@@ -293,10 +294,10 @@ TEST(FinalPicture, OfASkyThroughAHoleHasItsClosedForm) {
 }
 
 TEST(FinalPicture, OfAnOfficeByDayAgreesWithPathTracing) {
-  // A square of the floor near the pane, partly in the sun, one beside the desk, and one deep in the room: each as
-  // 4 x 4 pieces whose irradiances paths tell.
+  // Three squares: one of the floor near the pane and partly in the sun, one beside the desk, and one deep in the room.
+  // The reference is path tracing to 4 x 4 pieces of each.
   const Scene scene = daylight_office();
-  // The mesh of 4000 patches leaves a part of the percent that is allowed.
+  // The mesh of 4000 patches uses a part of the allowed percent.
   const Simulation simulation = solved(scene, 4000);
   for (const Point& middle : {Point(1.5, 0.8, 0), Point(2.9, 2.5, 0), Point(2, 4.5, 0)}) {
     constexpr int pieces = 4;
@@ -319,7 +320,7 @@ TEST(FinalPicture, OfAnOfficeByDayAgreesWithPathTracing) {
       found += value;
       expected += wanted;
       square += std::pow(value - wanted, 2);
-      // The wanted error of pixels, and three times that of paths
+      // The requested error of pixels, and three times that of paths.
       allowed += std::pow(0.01 * wanted, 2) + std::pow(3 * 0.6 / pi * paths.standard_error(k, 0), 2);
     }
     EXPECT_NEAR(found, expected, 0.01 * expected) << middle.transpose();
@@ -337,7 +338,7 @@ TEST(FinalPicture, OfAFisheyeByDayIntegratesToTheIrradianceOfASensor) {
   Camera camera{sensor.point, sensor.point + sensor.normal, 180};
   camera.projection = Projection::hemispherical;
   const Picture picture = take_picture(simulation, final_options(camera, 200));
-  // The luminaire behind the sensor does not shine on it.
+  // The luminaire is behind the sensor and does not light it.
   EXPECT_NEAR(picture.radiance.pixels.col(0).mean() * 4, expected, 0.01 * expected);
 }
 
@@ -349,7 +350,7 @@ TEST(FinalPicture, HidesTheMeshByDay) {
   };
   const Picture coarse = picture_by(400);
   const Picture fine = picture_by(6000);
-  // Inside; the sky would decide the mean.
+  // Only pixels inside, as the sky would dominate the mean.
   const Eigen::ArrayXd inside = (coarse.radiance.outlook.array() < 0.01).cast<double>();
   const Eigen::ArrayXd a = luminances(coarse).array() * inside;
   const Eigen::ArrayXd b = luminances(fine).array() * inside;
@@ -357,7 +358,7 @@ TEST(FinalPicture, HidesTheMeshByDay) {
 }
 
 TEST(FinalPicture, ShowsSpheresThatEmit) {
-  // At 2 m before a black wall, of radius 0.3: parallel rays see a disc of M / pi.
+  // A sphere of radius 0.3 and exitance M, 2 m in front of a black wall: parallel rays see a disc of radiance M / pi.
   Scene scene = empty_scene({grey(0)});
   scene = with_quad(std::move(scene), {Point(-9, 4, -9), Point(9, 4, -9), Point(9, 4, 9), Point(-9, 4, 9)});
   Luminaire lamp;
@@ -374,7 +375,7 @@ TEST(FinalPicture, ShowsSpheresThatEmit) {
     const Picture picture = take_picture(simulation, options);
     EXPECT_NEAR(picture.radiance.pixels(32 * 64 + 32, 0), 5 / pi, 1e-9);
     EXPECT_EQ(picture.radiance.pixels(0, 0), 0);
-    // Its outline, 2 pi 0.3 of 64 pixels, is resolved to less than a tenth of a pixel.
+    // The outline of length 2 pi 0.3 in 64 pixels is resolved to less than a tenth of a pixel.
     EXPECT_NEAR(picture.radiance.pixels.col(0).mean(), 0.09 * 5, 0.1 / 64 * 2 * pi * 0.3 * 5 / pi);
   }
 }
@@ -396,7 +397,7 @@ Scene room_with_an_open_end(double length) {
   return scene;
 }
 
-// By day such a room is seen from inside.
+// By day the default view of such a room is from inside.
 TEST(DefaultView, ByDayIsInsideARoomWithAnOpenEnd) {
   for (const double length : {7.0, 9.0}) {
     const Scene scene = room_with_an_open_end(length);

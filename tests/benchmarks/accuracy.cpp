@@ -20,7 +20,7 @@ namespace {
 using namespace patchlight;
 using namespace patchlight::test;
 
-// At least so many patches, evenly, and then up to three times as many where they pay.
+// At least this number of uniform patches, then up to three times as many where they reduce the error most.
 Simulation finest(const Scene& scene, std::size_t patches) {
   const double most = 3 * static_cast<double>(patches);
   Request request;

@@ -79,9 +79,9 @@ double error_of(const Field& radiosity, const Reference& reference) {
   return (area_norm(reference.radiosity - radiosity, area) / area_norm(reflected, area)).maxCoeff();
 }
 
-// The picture after so many rows.
+// The picture after this number of rows.
 struct Shown {
-  double rows = 0;  // share of all
+  double rows = 0;  // fraction of all rows
   double cpu_seconds = 0;
   double error = 0;
   double error_without_ambient = 0;
@@ -102,7 +102,7 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
   SolverOptions options{.solver = solver, .relative_error = 1e-9, .max_iterations = 1};
   options.largest_row_sum = std::numeric_limits<double>::infinity();
   solve(*transport, problem, options, [&](const Progress& progress) {
-    // Not the lamps, before their light has arrived.
+    // Skips the lamps before their light has arrived.
     if (progress.iteration == nullptr || progress.iteration->number == 0) return true;
     const double now = cpu_seconds();
     const Field shot = progress.irradiance();
@@ -116,7 +116,7 @@ std::vector<Shown> shown(const Room& room, const Occluder& occluder, Solver solv
   return all;
 }
 
-// The last that is shown with at most this share of the rows.
+// The last picture with at most this fraction of the rows.
 const Shown& at(const std::vector<Shown>& all, double share) {
   const auto after = std::find_if(all.begin(), all.end(), [share](const Shown& one) { return one.rows > share; });
   return after == all.begin() ? *after : *(after - 1);

@@ -54,7 +54,7 @@ using test::RandomRoom;
 // Results are compared in the green band.
 constexpr Eigen::Index band = 1;
 
-// Paths of the pilot, and the relative standard error that the number of paths after it is chosen for.
+// Number of paths of the pilot, and the relative standard error that determines the number of paths after it.
 constexpr std::uint32_t pilot_paths = 2048;
 constexpr double wanted_error = 0.006;
 
@@ -105,7 +105,7 @@ Options parse(int count, char** values) {
   return options;
 }
 
-// The arguments that the tool itself makes of `patchlight solve FILE` and these options.
+// The arguments that the tool itself derives from `patchlight solve FILE` and these options.
 cli::SolveArguments tool_arguments(const path& scene_file, const std::vector<std::string>& more) {
   std::vector<std::string> words = {"patchlight", "solve", scene_file.string(), "--points-output", "sensors.csv"};
   words.insert(words.end(), more.begin(), more.end());
@@ -120,7 +120,7 @@ struct Reference {
   double standard_error = 0;
 };
 
-// References by place, kept in a file: its first line identifies the scene and the number of paths.
+// References by place, kept in a file whose first line identifies the scene and the number of paths.
 class ReferenceFile {
  public:
   ReferenceFile(path file, std::string identity) : file_(std::move(file)), identity_(std::move(identity)) {
@@ -188,8 +188,8 @@ std::string place_name(const PathReceiver& patch) {
   return place_name(patch.corners, patch.side == Side::front ? Vector::UnitZ() : Vector(-Vector::UnitZ()));
 }
 
-// Traces paths to places of one kind. A pilot chooses the number of paths of each place and is not used again, which
-// keeps the estimate unbiased.
+// Traces paths to places of one kind. A pilot determines the number of paths of each place. Its results are discarded,
+// which keeps the estimate unbiased.
 template <class Place>
 std::vector<Reference> trace(const Scene& scene, const KeptSides& sides, const std::vector<Place>& places,
                              PathOptions by, std::uint32_t most_paths) {
@@ -220,7 +220,7 @@ std::vector<Reference> trace(const Scene& scene, const KeptSides& sides, const s
   return references;
 }
 
-// The same, where the file does not have them already.
+// The same, unless the file already has the result.
 template <class Place>
 std::vector<Reference> find_references(const Simulation& simulation, const std::vector<Place>& places,
                                        ReferenceFile& file, const Options& options) {
@@ -236,13 +236,13 @@ std::vector<Reference> find_references(const Simulation& simulation, const std::
   return references;
 }
 
-// A sensor by the solver and by paths, W/m^2.
+// The reading of a sensor by the solver and by paths, W/m^2.
 struct Comparison {
   std::string room;
   double irradiance = 0;
   double standard_error = 0;
   Reference reference;
-  double scale = 0;  // the reference, or a tenth of its mean in the room if that is more
+  double scale = 0;  // the larger of the reference and a tenth of its mean in the room
 
   double difference() const { return irradiance - reference.irradiance; }
   double z() const {
@@ -281,9 +281,9 @@ struct Probe {
   double weight = 0;  // its share of the area, divided by the probability of drawing it
 };
 
-// Draws patches of those that the stated total counts: half in proportion to their area, half in proportion to their
-// part in the square of the stated error. Few patches hold most of that: drawn by area alone, the mean of their squares
-// has a standard deviation of several times itself.
+// Draws patches that the stated total includes: half in proportion to their area, half in proportion to their part of
+// the squared stated error. Few patches hold most of this square, so draws by area alone would have a standard
+// deviation of several times the mean.
 std::vector<Probe> draw_probes(const Simulation& simulation, const Eigen::VectorXd& area,
                                const Eigen::ArrayXd& variance, const Options& options) {
   const Eigen::ArrayXd by_area = area.array() / area.sum();
@@ -302,8 +302,8 @@ std::vector<Probe> draw_probes(const Simulation& simulation, const Eigen::Vector
   return probes;
 }
 
-// ||B - B_true||_A / ||B - E||_A: the mean of rho^2 (H - H_ref)^2 by probes, without the variance of the
-// reference, over the mean of rho^2 H^2 of all patches.
+// ||B - B_true||_A / ||B - E||_A: the mean of rho^2 (H - H_ref)^2 over the probes, without the variance of the
+// reference, over the mean of rho^2 H^2 over all patches.
 class TotalErrorMeter {
  public:
   TotalErrorMeter(const Scene& scene, const Simulation& simulation, const Options& options)
@@ -325,8 +325,8 @@ class TotalErrorMeter {
     return receivers;
   }
 
-  // If a stated error is the standard deviation s of a normal error, (H - H_ref)^2 has the mean s^2 + n^2 and the
-  // variance 2 (s^2 + n^2)^2, where n is the noise of the paths. Probes add the spread of s^2 among patches.
+  // If a stated error is the standard deviation s of a normal error, (H - H_ref)^2 has the mean s^2 + n^2. Its variance
+  // is 2 (s^2 + n^2)^2, where n is the noise of the paths. Probes add the spread of s^2 among patches.
   TotalError measure(const std::vector<Reference>& references) const {
     const auto count = static_cast<double>(probes_.size());
     double square = 0, variance = 0, z = 0, reflecting = 0;
@@ -483,7 +483,7 @@ void print_room(const RoomResult& room) {
   std::fflush(stdout);
 }
 
-// The room as a scene file, and what its sensors read.
+// Writes the room as a scene file, and the readings of its sensors.
 void write_failure(const RandomRoom& room, const RoomResult& result, const path& folder) {
   write_random_room(room, folder);
   std::ofstream truth(folder / (room.name + ".truth.txt"));

@@ -37,12 +37,12 @@ Effort effort(const Assembled& room, SolverOptions options) {
   const double start = cpu_seconds();
   const Solution solution = solve(*room.transport, room.problem, options);
   const Iteration& last = solution.history.back();
-  // For what shoots as many shots as there are patches are one iteration.
+  // For shooting solvers, one iteration is as many shots as there are patches.
   const double unit = is_shooting(options.solver) ? room.mesh.size() : 1;
   return {solution.converged, last.number / unit, last.work, cpu_seconds() - start};
 }
 
-// "5 / 8": iterations / applications; a dash where it was not reached.
+// "5 / 8": iterations / applications; a dash if the error was not reached.
 std::string cell(const Effort& effort) {
   if (!effort.converged) return "-";
   char text[64];
@@ -57,7 +57,7 @@ std::string number(double applications) {
   return text;
 }
 
-// "7 / 11 / 11 (0.004)": applications to each of the three, and the CPU seconds of the last.
+// "7 / 11 / 11 (0.004)": applications to reach each of the three errors, and the CPU seconds of the last.
 std::string in_short(const Effort& rough, const Effort& fine, const Effort& certified) {
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.3f", certified.cpu_seconds);
@@ -65,7 +65,7 @@ std::string in_short(const Effort& rough, const Effort& fine, const Effort& cert
          " (" + seconds + ")";
 }
 
-// Prints one room's table; one cell in short for each solver.
+// Prints one room's table; returns one short cell for each solver.
 std::vector<std::string> print_table(const Assembled& room) {
   const Field exact = solve(*room.transport, room.problem, {.relative_error = 1e-11, .largest_row_sum = 1}).radiosity;
   const double radius = spectral_radius(*room.transport, room.problem, 50).maxCoeff();
@@ -92,7 +92,7 @@ std::vector<std::string> print_table(const Assembled& room) {
   return cells;
 }
 
-// All rooms in one table, a column each.
+// Prints all rooms in one table, a column each.
 void print_summary(const std::vector<std::string>& rooms, const std::vector<std::vector<std::string>>& cells) {
   std::printf("### All rooms: applications to 1e-3 / 1e-6 / certified 1e-6 (CPU seconds)\n\n| solver |");
   for (const std::string& room : rooms) std::printf(" %s |", room.c_str());
@@ -106,13 +106,13 @@ void print_summary(const std::vector<std::string>& rooms, const std::vector<std:
   std::printf("\n\n");
 }
 
-// Iterations of SOR to a true error of 1e-6.
+// Iterations of SOR to reach a true error of 1e-6.
 double sweeps(const Assembled& room, const Field& exact, std::optional<double> relaxation) {
   return effort(room, {.solver = Solver::sor, .relative_error = 1e-6, .relaxation = relaxation, .reference = exact})
       .iterations;
 }
 
-// One row: a factor of 1, the estimated one, and the best of a grid from 1 to 1.9.
+// Prints one row: a factor of 1, the estimated one, and the best of a grid from 1 to 1.9.
 void print_factors(const char* name, const std::string& reflectance, const Assembled& room) {
   const Field exact = solve(*room.transport, room.problem, {.relative_error = 1e-11, .largest_row_sum = 1}).radiosity;
   const double estimate = relaxation_for(spectral_radius(*room.transport, room.problem, 5).maxCoeff());

@@ -1,4 +1,4 @@
-"""`patchlight solve --accuracy`, `--time-limit`, `--error-bars`: what is asked, what is stated, what is refused."""
+"""`patchlight solve --accuracy`, `--time-limit`, `--error-bars`: requested, stated and refused accuracies."""
 import json
 import math
 import re
@@ -11,7 +11,7 @@ from support import ROOM, ToolTest
 GOOD, USAGE, INPUT, NOT_REACHED, MEMORY = 0, 1, 2, 3, 4
 BARS = ("mesh", "form_factor", "solver", "total", "display")
 ARRAYS = ("error_mesh", "error_form_factor", "error_total", "display_error", "error_irradiance")
-# Both sides of the plate and the lamp's front take part, and the inner sides of the room.
+# Both sides of the plate, the front of the lamp and the inner sides of the room are included.
 AREA = 6 * 4 + 2 * 1 + 0.25
 
 OFFICE_MODEL = """mtllib office.mtl
@@ -98,11 +98,11 @@ class AccuracyTest(ToolTest):
         return json.loads((self.folder / "report.json").read_text()), done
 
     def body(self, name):
-        """All of a PLY but its header, which holds the command line."""
+        """The body of a PLY without its header, which holds the command line."""
         return (self.folder / name).read_bytes().split(b"end_header\n", 1)[1]
 
     def test_inside_and_outside_are_stated_apart_and_may_be_named(self):
-        """A closed room, one wall of which is a pane, on lit ground."""
+        """A closed room with a pane as one of its walls, on lit ground."""
         self.write("office.toml", OFFICE)
         self.write("office.obj", OFFICE_MODEL)
         self.write("office.mtl", OFFICE_MATERIALS)
@@ -205,7 +205,7 @@ class AccuracyTest(ToolTest):
         errors = report["relative_error"]
         self.assertEqual(set(errors), {*BARS, "inside"})
         self.assertIs(errors["inside"], False)
-        # The worst band may be another one for each: the total of one band is not above the hypotenuse of all.
+        # Each part may have another worst band; the total of a single band is at most the hypotenuse of all parts.
         parts = [errors[bar] for bar in BARS[:3]]
         self.assertLessEqual(errors["total"], math.hypot(*parts) * (1 + 1e-12))
         self.assertGreaterEqual(errors["total"], max(parts) * (1 - 1e-12))
@@ -233,12 +233,12 @@ class AccuracyTest(ToolTest):
             steps = report["accuracy"]
             self.assertEqual((report["request"]["accuracy"], report["request"]["patches"]), (0.005, None))
             self.assertLessEqual(steps[-1]["total"], 0.005)
-            # A tenth below what is asked is enough.
+            # The solver accepts a tenth below the requested error.
             self.assertTrue(all(step["total"] > 0.9 * 0.005 for step in steps[:-1]))
             self.assertEqual(steps[-1]["patches"], report["mesh"]["patches"])
             self.assertEqual({bar: steps[-1][bar] for bar in BARS} | {"inside": False}, report["relative_error"])
             self.assertGreater(len(steps), 1)
-            # A row for each mesh, each in a column of its own.
+            # One row for each mesh, with separate columns.
             rows = [re.split(r"  +", line.strip()) for line in done.stdout.splitlines()]
             first = rows.index(next(row for row in rows if row[0] == "patches"))
             table = rows[first + 1:first + 1 + len(steps)]
@@ -252,15 +252,15 @@ class AccuracyTest(ToolTest):
         self.assertEqual(self.body("1.ply"), self.body("2.ply"))
 
     def test_refined_meshes_have_no_holes(self):
-        """Areas add up to the polygons', also where a corner hangs in the middle of a neighbour's edge."""
+        """Areas add up to those of the polygons, even if a corner hangs in the middle of a neighbor's edge."""
         report, _ = self.report("--accuracy", "0.5%", "--sides", "both", "-o", "a.ply")
         faces = faces_of((self.folder / "a.ply").read_bytes())
         self.assertEqual(len(faces), report["mesh"]["patches"])
         areas = [area_of(face) for face in faces]
         both = 2 * (6 * 4 + 1 + 0.25)
-        # Corners are doubles of some 2 m: each area is right to 1e-15.
+        # Corners are doubles of about 2 m, so each area is exact to 1e-15.
         self.assertAlmostEqual(math.fsum(areas), both, delta=1e-15 * len(faces) * both)
-        # A corner hangs where it is the middle of an edge.
+        # A hanging corner is the middle of an edge.
         corners = {corner for face in faces for corner in face}
         middles = {tuple((x + y) / 2 for x, y in zip(a, b)) for face in faces for a, b in zip(face, face[1:] + face[:1])}
         self.assertGreater(len(corners & middles), 0)
@@ -277,7 +277,7 @@ class AccuracyTest(ToolTest):
     def test_time_ends_with_a_result(self):
         begin = time.monotonic()
         report, _ = self.report("--time-limit", "1.5s", "-o", "a.vtp")
-        # No measure of speed: only that it does not go on and on.
+        # Not a measure of speed: the run must only come to an end.
         self.assertLess(time.monotonic() - begin, 100)
         self.assertEqual(report["request"]["time_s"], 1.5)
         self.assertGreater(report["relative_error"]["total"], 0)

@@ -1,4 +1,4 @@
-"""A building as it comes: daylight and what takes part on the command line, a new scene file, check on one screen."""
+"""A typical building: daylight and effects on the command line, a new scene file, and a short report of `check`."""
 import json
 import unittest
 
@@ -140,7 +140,7 @@ class BuildingTest(ToolTest):
         self.good("solve", "court.toml", "--patches", 200, "-q", "-o", "court.vtp")
 
     def test_a_new_scene_file_can_be_solved_whatever_the_unit(self):
-        """A hall in millimetres that is read as metres is 4,000 m long: that is no room."""
+        """A hall in millimeters that is read in meters is 4,000 m long, which is not a room."""
         hall = (self.folder / "hall.obj").read_text().splitlines()
         self.write("mm.obj", "\n".join("v " + " ".join(str(1000 * float(x)) for x in line.split()[1:4])
                                        if line.startswith("v ") else line for line in hall) + "\n")
@@ -158,7 +158,7 @@ class BuildingTest(ToolTest):
         said = self.good("check", "fine.toml")
         self.assertRegex(said, r"\d{6} sensors are requested.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
         self.assertNotIn("sensors are requested", self.good("check", "hall.toml"))
-        # Long before its end: without mesh and patches it is refused afterwards.
+        # The run stops early: without mesh and patches, the memory limit refuses it later.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
         self.assertRegex(done.stderr, r"note: implausible_size: \d{6} sensors are requested")
 

@@ -1,4 +1,4 @@
-"""The checks of pages find the mistakes that they are there to find."""
+"""The checks of pages find mistakes of every kind."""
 import importlib.util
 import pathlib
 import tempfile

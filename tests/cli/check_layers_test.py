@@ -1,4 +1,4 @@
-"""The layer check finds what it is there to find."""
+"""The layer check finds forbidden includes."""
 import pathlib
 import subprocess
 import sys
@@ -20,7 +20,7 @@ unistd.h: base
 
 class CheckLayersTest(unittest.TestCase):
     def check(self, name, line, layers=LAYERS):
-        """The script's exit code and complaint about a tree with one file of one line."""
+        """Returns the script's exit code and complaint about a tree with one file of one line."""
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             for file, text in {"scripts/layers.txt": layers, name: line + "\n"}.items():

@@ -1,4 +1,4 @@
-"""patchlight check: what a model holds, what is wrong with it, and whether it can be solved."""
+"""patchlight check: the contents of a model, its faults, and whether it can be solved."""
 import json
 import math
 import unittest
@@ -73,7 +73,7 @@ class CheckTest(ToolTest):
         return line.removeprefix("next: patchlight ").split()
 
     def test_a_closed_room_without_a_lamp_is_not_offered_a_sky(self):
-        """What it proposes lights the room: the command that comes next, and the one that this leads to."""
+        """The suggested commands light the room: the next command and the one after it."""
         dark = MATERIALS.replace("Ke 10 9 8\n", "")
         self.write("room.mtl", dark)
         done = self.check("room.obj")

@@ -1,4 +1,4 @@
-"""A run that is killed goes on from the rows of rays that it has kept, with the same bits."""
+"""A killed run resumes from the rows of rays that it has kept, with the same bits."""
 import os
 import signal
 import subprocess
@@ -7,7 +7,7 @@ import unittest
 
 from support import TOOL, ToolTest
 
-# So many kills of one run after the other; more where somebody asks for them.
+# Number of kills of one run; PATCHLIGHT_KILLS raises it.
 KILLS = int(os.environ.get("PATCHLIGHT_KILLS", "2"))
 PATCHES = 9000
 # Rays of a patch: a block of rows takes tenths of a second.
@@ -30,14 +30,14 @@ class Checkpoint(ToolTest):
         return subprocess.run(self.command(), cwd=self.folder, check=True, capture_output=True, text=True)
 
     def results(self):
-        """Both to the last bit, but the radiances of .ply: its colours."""
+        """The bytes of both outputs. The .ply has radiances as colors only."""
         return [(self.folder / name).read_bytes() for name in ("out.csv", "out.ply")]
 
     def blocks(self):
         return sorted(path.name for path in self.kept.glob("rows_*.npy")) if self.kept.exists() else []
 
     def kill_when(self, blocks, command):
-        """Kills the command when it has kept so many blocks, or tells that it has come to its end."""
+        """Kills the command after it has kept this number of blocks; returns False if the command ended earlier."""
         run = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while run.poll() is None and len(self.blocks()) < blocks:
             time.sleep(0.002)

@@ -31,15 +31,15 @@ class CompareTest(ToolTest):
             run = runs[name]
             self.assertTrue(run["reached"], name)
             self.assertLessEqual(run["true_error"], 1e-6)
-            # It stopped at the first iterate that is good enough. The bound, relative to the iterate, is none below the
-            # error, relative to the reference: the two differ by less than a thousandth where the error does.
+            # The run stops at the first iterate that is accurate enough. The bound is relative to the iterate and the
+            # error to the reference, which differ by less than a thousandth here. So the bound is not below the error.
             self.assertTrue(all(row["true_error"] > 1e-6 for row in run["history"][:-1]), name)
             late = [row for row in run["history"] if row["true_error"] < 1e-3]
             self.assertTrue(all(row["error_bound"] >= 0.999 * row["true_error"] for row in late), name)
             self.assertAlmostEqual(run["history"][0]["true_error"], 1, 12)
             self.assertIn(name, done.stdout)
         self.assertLess(facts["reference_relative_residual"], 1e-9)
-        # Rows on demand are not closed: they cannot come as near.
+        # Rows on demand are not closed, so they cannot reach the same error.
         self.assertFalse(runs["progressive-on-demand"]["reached"])
         self.assertEqual(runs["progressive-on-demand"]["iterations"], 1)
 
@@ -71,7 +71,7 @@ class CompareTest(ToolTest):
         names = sorted(path.name for path in (self.folder / "out").iterdir())
         self.assertEqual(names, sorted(PLOTS + ["cg.pvd", "cg_series", "compare.csv", "compare.json", "history.csv",
                                                 "jacobi.pvd", "jacobi_series"]))
-        # A second run replaces the first, with nothing left of it.
+        # A second run replaces the first one completely.
         self.compare("--solvers", "sor", "--no-series", "--relaxation", 1.1)
         names = sorted(path.name for path in (self.folder / "out").iterdir())
         self.assertEqual(names, sorted(PLOTS + ["compare.csv", "compare.json", "history.csv"]))
@@ -102,7 +102,7 @@ class CompareTest(ToolTest):
             self.assertIn(words[0], done.stderr)
 
     def test_trapped_light_is_said(self):
-        """Reflectance 1 everywhere, the lamp's too, in a closed room."""
+        """Reflectance 1 everywhere, including the lamp, in a closed room."""
         done = self.run_tool("compare-solvers", "room.obj", "--patches", 100, "-o", "out", "--set", "white.reflectance=1",
                              "--set", "lamp.reflectance=1")
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)

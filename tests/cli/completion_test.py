@@ -1,4 +1,4 @@
-"""Completion in bash: docs/patchlight.bash, which scripts/make_help.py writes from what the tool says about itself."""
+"""Completion in bash: docs/patchlight.bash, which scripts/make_help.py writes from the tool's help."""
 import pathlib
 import subprocess
 import unittest
@@ -7,7 +7,7 @@ FILE = pathlib.Path(__file__).resolve().parent.parent.parent / "docs" / "patchli
 
 
 def offered(*words):
-    """What bash offers for the last of the words."""
+    """The completions that bash offers for the last of the words."""
     script = f'source "{FILE}"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _patchlight; printf "%s\\n" "${{COMPREPLY[@]}}"'
     done = subprocess.run(["bash", "-c", script, "bash", *words], capture_output=True, text=True, check=True)
     return done.stdout.split()

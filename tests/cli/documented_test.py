@@ -1,4 +1,4 @@
-"""The reference pages list what the program reads and writes: every key, column, array and file, and none besides."""
+"""The reference pages list exactly the keys, columns, arrays and files that the program reads and writes."""
 import csv
 import json
 import os
@@ -16,12 +16,12 @@ OUTPUTS = REFERENCE / "outputs"
 # Words in tables that are values or file names.
 NO_KEYS = {"null", "lx", "W/m^2", "disagrees", "inconclusive", "agrees", "all", "tiles", "rays", "on-demand"}
 
-# Keys of diagnostics, of which there may be none.
+# Keys of diagnostics, which may be absent.
 OF_DIAGNOSTICS = {"code", "severity", "text"}
 
 
 def section(page, heading=None):
-    """The text of a page, or of one section with those below it."""
+    """The text of a page, or of one section with its subsections."""
     text = page.read_text(encoding="utf-8")
     if heading is None:
         return text
@@ -188,7 +188,7 @@ class DocumentedTest(ToolTest):
             self.assertLessEqual(set(keys(facts)), names)
 
     def test_keys_of_the_scene_file(self):
-        """By the readers' own lists of keys."""
+        """Compares with the readers' own lists of keys."""
         sources = sorted((ROOT / "src" / "input" / "toml").glob("*.cpp"))
         text = "".join(file.read_text(encoding="utf-8") for file in sources)
         allowed = {name for keys in re.findall(r"allow_keys\(\*?\w+, \{(.*?)\}\)", text, re.DOTALL) for name in re.findall(r'"(\w+)"', keys)}

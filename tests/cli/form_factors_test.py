@@ -1,4 +1,4 @@
-"""patchlight form-factors: the matrix as others read it, the folder, and solving from it."""
+"""patchlight form-factors: the matrix in common formats, the folder, and solving from it."""
 import ast
 import csv
 import json
@@ -11,7 +11,7 @@ GOOD, USAGE, INPUT, MEMORY, OUTPUT = 0, 1, 2, 4, 6
 
 
 def load(file):
-    """A reader of .npy of its own: shape and values."""
+    """A minimal reader of .npy: shape and values."""
     data = file.read_bytes()
     assert data[:8] == b"\x93NUMPY\x01\x00"
     (length,) = struct.unpack("<H", data[8:10])
@@ -38,7 +38,7 @@ class FormFactorsTest(ToolTest):
         shape, area = load(folder / "area.npy")
         self.assertEqual(shape, (size,))
         for i in range(size):
-            # The room is closed; the remainder that is not stored is below 1e-7, and 1e-7 is lost to the storage of F.
+            # The room is closed. The remainder that is not stored is below 1e-7, and storing F costs 1e-7.
             self.assertAlmostEqual(sum(F[i * size : (i + 1) * size]), 1, delta=1e-6)
             self.assertEqual(F[i * size + i], 0)
             for j in range(i):
@@ -135,7 +135,7 @@ class FormFactorsTest(ToolTest):
         self.assertEqual(info["counts"]["free_pairs"], 0)
 
     def test_groups_with_both_sides_are_said_to_be_shares_of_both(self):
-        # Unit squares that share an edge: 0.20004 of what leaves a front, and half of that of what leaves both sides.
+        # Unit squares that share an edge: 0.20004 of the light from a front, or half of that for light from both sides.
         corners = ("0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 1 1", "0 0 1")
         lines = [f"v {corner}" for corner in corners] + ["g source", "f 1 2 3 4", "g receiver", "f 1 4 5 6"]
         (self.folder / "squares.obj").write_text("\n".join(lines) + "\n")
@@ -156,7 +156,8 @@ class FormFactorsTest(ToolTest):
 
         auto = mean_of("auto")
         for estimator in ("area", "point-polygon", "hemisphere", "contour"):
-            # The mean row sum: some 1000 pairs with 256 samples each, and touching ones that area sampling finds badly.
+            # The mean row sum: about 1000 pairs with 256 samples each, and touching pairs, for which area sampling is
+            # inaccurate.
             self.assertAlmostEqual(mean_of(estimator), auto, delta=0.03, msg=estimator)
         self.find("-o", "area.ff", "--patches", "60", "--estimator", "area")
         self.assertFalse((self.folder / "area.ff/standard_error.npy").exists())
@@ -185,7 +186,7 @@ class FormFactorsTest(ToolTest):
             rows = list(csv.reader(file))
         self.assertEqual(rows[0], ["from", "area_m2", "white", "lamp"])
         area = {row[0]: float(row[1]) for row in rows[1:]}
-        # 24 m^2 of walls; both sides of the plate and of the lamp.
+        # 24 m^2 of walls, and both sides of the plate and of the lamp.
         self.assertAlmostEqual(area["white"], 26, places=6)
         self.assertAlmostEqual(area["lamp"], 0.5, places=6)
         F = {row[0]: dict(zip(rows[0][2:], map(float, row[2:]))) for row in rows[1:]}
@@ -243,7 +244,7 @@ class FormFactorsTest(ToolTest):
             self.assertEqual(done.returncode, INPUT if lines else GOOD, done.stderr)
 
     def test_they_tell_whether_patches_are_graded(self):
-        """The box is known again by its faces alone, with the patches that it was cut into then."""
+        """The stored patches fit the box by its faces alone."""
         self.find("-o", "room.ff", "--patches", "300", "--graded-edges")
         info = json.loads((self.folder / "room.ff" / "info.json").read_text())
         self.assertEqual(info["options"]["graded_edges"], True)
@@ -251,7 +252,7 @@ class FormFactorsTest(ToolTest):
         self.assertEqual(done.returncode, GOOD, done.stderr)
 
     def test_those_of_a_far_smaller_model_are_refused_before_it_is_cut(self):
-        """A room a thousand times as large would take 60 million patches with these edges."""
+        """A room a thousand times as large would need 60 million patches with these edges."""
         self.find("-o", "room.ff", "--patches", "60")
         large = [" ".join(["v", *(str(1000 * float(x)) for x in line.split()[1:])]) if line.startswith("v ") else line
                  for line in ROOM.splitlines()]

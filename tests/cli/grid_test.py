@@ -1,4 +1,4 @@
-"""Unstructured grids that the tool writes, read by meshio: -o FILE.vtu. Left out where Debian's python3-meshio is not there."""
+"""Unstructured grids, -o FILE.vtu, read by meshio. Skipped without Debian's package python3-meshio."""
 import json
 import pathlib
 import subprocess
@@ -11,7 +11,7 @@ from support import ToolTest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from read_vtp import read_vtp  # noqa: E402
 
-# By the system's Python, which Debian's packages are for.
+# The system's Python, which uses Debian's packages.
 PYTHON = "/usr/bin/python3"
 READ = """
 import json, sys, meshio

@@ -1,4 +1,4 @@
-"""Input and surroundings that are broken on purpose: the documented exit code, one sentence, nothing lost."""
+"""Invalid input and environments give the documented exit code and one sentence, and destroy no files."""
 import json
 import os
 import pathlib
@@ -44,7 +44,7 @@ class HostileTest(ToolTest):
         return done
 
     def test_positions_out_of_reach(self):
-        """In metres and in millimetres: the limit is one of the scene's size."""
+        """In meters and in millimeters: the limit applies to the size of the scene."""
         for unit, factor in (("m", 1), ("mm", 1e-3), ("mm", 1e-9)):
             self.write("room.obj", scaled(factor))
             far = 1e19 * factor
@@ -74,7 +74,7 @@ class HostileTest(ToolTest):
                             self.refused(INPUT, ["from the middle of the scene"], *run)
 
     def test_faces_that_are_nothing_beside_another(self):
-        """Rays of the large one would be infinitely long in extents of the others."""
+        """Rays of the large face would be infinitely long relative to the extents of the others."""
         a = 2.278e-41
         faces = (((0, 0, 0), (1, 0, 0), (1, 1, 0)), ((0, 0, 0), (0, a, a), (0, 0, a)), ((0, 0, 0), (a, 0, a), (a, a, a)),
                  ((0, 0, 0), (a, a, a), (a, a, 0)))
@@ -232,7 +232,7 @@ class HostileTest(ToolTest):
         self.good("check", "w.toml")
 
     def test_little_address_space(self):
-        """From what the program takes to begin with upward: a result, or the exit code for too little memory."""
+        """Upward from the memory that the program needs at start: a result, or the exit code for too little memory."""
         codes = []
         for megabytes in range(180, 320, 20):
             def limit(size=megabytes << 20):
@@ -244,7 +244,7 @@ class HostileTest(ToolTest):
         self.assertTrue(codes)
 
     def test_a_name_that_is_taken(self):
-        """Somebody has put files where this process would put its own."""
+        """Files already exist under the names of temporary files of this process."""
         script = ('import os, sys\n'
                   'for k in range(20):\n'
                   '  for suffix in ("ply", "pvd", "vtp", "partial"):\n'
@@ -263,13 +263,13 @@ class HostileTest(ToolTest):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_light_below_the_smallest_numbers(self):
-        """Squares of numbers below 1e-150 are no normal numbers any more."""
+        """Squares of numbers below 1e-150 are subnormal or zero."""
         for exitance in ("5e-324", "1e-320", "1e-200"):
             self.refused(INPUT, ["exitance", "1e-150"], *solve("--set", f"lamp.exitance={exitance}", "-o", "a.ply"))
         self.good(*solve("--set", "lamp.exitance=1e-150", "-o", "a.ply"))
 
     def test_closed_rooms_that_absorb_nothing(self):
-        """A reflectance that differs from 1 by rounding is 1: there is no solution, and no negative light."""
+        """A reflectance that differs from 1 by rounding equals 1: there is no solution, and no negative light."""
         words = solve("--set", "*.reflectance=0.99999999999999989", "-o", "a.vtp", "--json", "a.json")
         done = subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=60, check=False)
         self.assertEqual(done.returncode, NOT_CONVERGED, done.stderr)
@@ -283,7 +283,7 @@ class HostileTest(ToolTest):
         self.good("check", "--", "-room.obj")
 
     def test_instances_of_nothing_and_variables_of_variables(self):
-        """Twelve kilobytes that hold 20^13 objects, and a text of ten gigabytes."""
+        """Twelve kilobytes that expand to 20^13 objects, and a text of ten gigabytes."""
         groups = ['<shape type="shapegroup" id="g0"><shape type="obj"><string name="filename" value="none.obj"/></shape>'
                   '</shape>']
         groups += [f'<shape type="shapegroup" id="g{k}">' +
@@ -317,7 +317,8 @@ class HostileTest(ToolTest):
             self.assertEqual(code, 0, errors)
 
     def test_pictures_larger_than_they_are_long(self):
-        """60,000 x 60,000 pixels in some kilobytes, and one picture under twelve names: decoded never, and once."""
+        """60,000 x 60,000 pixels in a few kilobytes must not be decoded; a picture under twelve names is decoded
+        once."""
         def png(width, height, rows):
             def chunk(kind, data):
                 return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

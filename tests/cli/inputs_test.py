@@ -1,4 +1,4 @@
-"""No file that is read is replaced, however it is named; nothing outside of a folder is read where that is asked for."""
+"""No output replaces an input, whatever its name is; confined runs read nothing outside of their folder."""
 import os
 import unittest
 
@@ -44,7 +44,7 @@ class InputsTest(ToolTest):
         self.assertEqual(content(self.folder), before)
 
     def test_what_a_scene_file_or_a_model_names_is_not_replaced(self):
-        """An output of each kind is a link to the file, or a name of it that leads through a folder."""
+        """An output of each kind is a link to the file, or another path to it."""
         solve = ("solve", "scene.toml", "--patches", "40", "-q")
         for file in ("room.obj", "room.mtl", "wood.png", "spots.pts", "lamp.ies", "scene.toml"):
             for suffix, option in ((".vtp", "-o"), (".pvd", "--series"), (".json", "--json"), (".png", "--picture"),
@@ -114,7 +114,7 @@ class InputsTest(ToolTest):
             self.assert_refused(OUTPUT, [long], command, "room.obj", "--json", long + ".json")
 
     def test_confined_to_a_folder(self):
-        """What lies outside is refused in the same words whether it is there or not; inside all is as ever."""
+        """Refusals of files outside do not reveal whether they exist; files inside are read as usual."""
         inside = self.folder / "inside"
         inside.mkdir()
         for name in ("room.obj", "room.mtl", "spots.pts", "lamp.ies", "scene.toml"):

@@ -1,4 +1,4 @@
-"""A run that is killed before any of its calls that change a folder leaves every output old or whole and new."""
+"""A run that is killed before any call that changes a folder leaves every output either old or complete and new."""
 import json
 import os
 import pathlib
@@ -14,12 +14,12 @@ from support import MATERIALS, ROOM, TOOL, ToolTest
 KILL = os.environ.get("PATCHLIGHT_KILL_AT_CALL")
 # In the order in which they are renamed.
 FILES = ("out.vtp", "spots.csv", "out.json")
-# Many times what a run makes: the end of the search when something is wrong with it.
+# Many times the calls of a run: ends the search if something is wrong.
 MOST_CALLS = 400
 
 
 def solve(light):
-    """A command that writes three files, which tell how bright the lamp is."""
+    """A command that writes three files, from which the test can read the brightness of the lamp."""
     return [TOOL, "solve", "room.obj", "--quiet", "--patches", "30", "--set", f"lamp.exitance={light}", "-o", "out.vtp",
             "--json", "out.json", "--points", "spots.txt", "--points-output", "spots.csv"]
 
@@ -53,7 +53,7 @@ class Kills(ToolTest):
         return list(self.folder.glob(".patchlight-*"))
 
     def copy_of_folder(self):
-        """A copy of all files, elsewhere."""
+        """A copy of all files in another folder."""
         copy = self.empty_folder()
         shutil.copytree(self.folder, copy, dirs_exist_ok=True)
         return copy
@@ -64,14 +64,14 @@ class Kills(ToolTest):
         return pathlib.Path(folder.name)
 
     def put_back(self, copy, aside):
-        """All files as they are in the copy. What a killed run has left goes aside."""
+        """Restores all files from the copy. Moves the leftovers of a killed run to `aside`."""
         for path in self.left():
             shutil.move(path, aside)
         shutil.rmtree(self.folder)
         shutil.copytree(copy, self.folder)
 
     def assert_next_run_removes_what_is_left(self, aside, command):
-        """One run removes what all killed ones have left."""
+        """One run removes the leftovers of all killed runs."""
         shutil.copytree(aside, self.folder, dirs_exist_ok=True)
         self.assertGreater(len(self.left()), 1)
         self.run_whole(command)
@@ -93,12 +93,12 @@ class Kills(ToolTest):
                 ages.append("new" if now == facts["new"][name] else "old")
             found.add(tuple(ages))
             self.put_back(old, aside)
-        # Before, between and after the renames, which nothing else comes between.
+        # Before, between and after the renames, which are consecutive.
         self.assertEqual(found, {("old",) * 3, ("new", "old", "old"), ("new", "new", "old"), ("new",) * 3})
         self.assert_next_run_removes_what_is_left(aside, solve("2,2,2"))
 
     def fact(self, name):
-        """What a file says of the light that it was solved with."""
+        """A content of the file that depends on the brightness of the lamp."""
         data = (self.folder / name).read_bytes()
         if name == "out.vtp":
             self.assertTrue(data.rstrip().endswith(b"</VTKFile>"))
@@ -107,7 +107,7 @@ class Kills(ToolTest):
 
     @staticmethod
     def range_of(data):
-        """The largest radiance, as the header has it."""
+        """The largest radiance according to the header."""
         return re.search(rb'Name="radiance"[^>]*RangeMax="([0-9.]+)"', data)[1]
 
     def test_a_folder_is_old_or_new(self):

@@ -1,4 +1,4 @@
-"""Lightmaps that the tool writes: --lightmap of solve and render."""
+"""Lightmaps of the tool: --lightmap of solve and render."""
 import json
 import unittest
 

@@ -1,8 +1,7 @@
-"""All outputs are the same bytes where people write 0,5 for a half or have a dotted capital I.
+"""All outputs have the same bytes in locales with a decimal comma or a dotted capital I.
 
-PATCHLIGHT_TAKE_LOCALE may name a library that makes the tool take the locale of its environment; by itself it stays
-with that of C.
-"""
+PATCHLIGHT_TAKE_LOCALE may name a library that makes the tool use the locale of its environment; by default it stays
+with the C locale."""
 import json
 import os
 import pathlib
@@ -41,7 +40,7 @@ COMMANDS = [
 
 
 def made(name, folder):
-    """Can the locale be made in the folder? The C library finds it there by LOCPATH."""
+    """Whether the locale can be made in the folder, where LOCPATH makes the C library look for it."""
     if shutil.which("localedef") is None:
         return False
     done = subprocess.run(["localedef", "-i", name, "-f", "UTF-8", folder / f"{name}.UTF-8"], capture_output=True,
@@ -50,7 +49,7 @@ def made(name, folder):
 
 
 def reproducible(value):
-    """Without what is measured on the way."""
+    """The value without measured times and memory."""
     if isinstance(value, dict):
         return {key: reproducible(entry) for key, entry in value.items()
                 if "second" not in key and key != "memory_peak_bytes"}
@@ -58,11 +57,11 @@ def reproducible(value):
 
 
 def comparable(path):
-    """The bytes; of what holds times, all but these."""
+    """The bytes of a file, without the times in it."""
     if path.suffix == ".json":
         return json.dumps(reproducible(json.loads(path.read_text())))
     if path.suffix == ".vtp" and path.name in ("a.vtp", "points.vtp"):
-        # Of the arrays names and ranges; how long they are when compressed depends on the times among them.
+        # Names and ranges of the arrays only, as their compressed length depends on the times among them.
         text = path.read_bytes().split(b"<AppendedData")[0].decode()
         lines = [line for line in re.sub(r'offset="\d+"\s*', "", text).splitlines() if "seconds" not in line]
         return "\n".join(lines)
@@ -71,7 +70,7 @@ def comparable(path):
 
 class LocaleTest(ToolTest):
     def results(self, environment):
-        """What every command says and every file that is left."""
+        """The output of every command, and all files."""
         with tempfile.TemporaryDirectory(prefix="patchlight-locale-") as name:
             folder = pathlib.Path(name)
             shutil.copytree(self.folder, folder, dirs_exist_ok=True)
@@ -81,7 +80,7 @@ class LocaleTest(ToolTest):
                                       capture_output=True, text=True, check=False)
                 text = done.stdout + done.stderr
                 if command.startswith("plan"):
-                    # How long things take is measured: of these numbers the shape.
+                    # Estimated times vary, so only the format of these numbers is compared.
                     text = re.sub(r"\d+(\.\d+)?", "1", text)
                 said[command] = (done.returncode, text)
             files = {str(path.relative_to(folder)): comparable(path) for path in folder.rglob("*") if path.is_file()}

@@ -1,9 +1,9 @@
-"""Every command that computes light warns of what its model lacks, with --quiet too."""
+"""Every command that computes light warns of faces missing from its model, even with --quiet."""
 import unittest
 
 from support import ToolTest
 
-# The object "gone" has no face with an area; the wall loses a face of two corners.
+# The object "gone" has no face with an area; the wall loses a face with two corners.
 GONE = "o gone\nf 1 2 2\n"
 SHORT = "f 1 2\n"
 
@@ -31,7 +31,7 @@ class LossesTest(ToolTest):
             }
             for command, words in commands.items():
                 self.assertEqual(len(self.warnings(command, name, *words)), expected, f"{command} {name}")
-        # Stored form factors keep what their model lacks.
+        # Stored form factors remember the missing faces.
         self.assertEqual(len(self.warnings("relight", "factors", "-o", "again.vtp")), 1)
 
 

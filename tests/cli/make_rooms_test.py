@@ -1,4 +1,4 @@
-"""scripts/make_rooms.py: the rooms are closed, their normals point inward, and they are as large as they should be."""
+"""scripts/make_rooms.py: the rooms are closed and have the right size, and their normals point inward."""
 import collections
 import pathlib
 import subprocess
@@ -22,7 +22,7 @@ def read_room(file):
 
 
 def volume(polygons):
-    """Of what the normals point into, by the divergence theorem."""
+    """Volume of the region into which the normals point, by the divergence theorem."""
     total = 0
     for a, *others in polygons:
         for b, c in zip(others, others[1:]):
@@ -44,7 +44,7 @@ class RoomsTest(unittest.TestCase):
             self.assertEqual([e for e, n in edges.items() if n != 1 or edges[e[::-1]] != 1], [], name)
 
     def test_the_room_with_two_blocks_has_its_size(self):
-        # 6 walls of n^2 squares; the floor lacks 0.18 n^2 and the blocks have 1.08 + 0.18 and no bottoms: 7.08 n^2.
+        # 6 walls of n^2 squares; the floor lacks 0.18 n^2, and the blocks have 1.08 + 0.18 and no bottoms: 7.08 n^2.
         for n in (10, 20, 40):
             polygons = self.rooms[f"closed_room_{n}"]
             self.assertEqual(len(polygons), round(2 * 7.08 * n * n))
@@ -54,7 +54,7 @@ class RoomsTest(unittest.TestCase):
         polygons = self.rooms["boxes_500"]
         ceilings = [p for p in polygons if all(x[2] == 3 for x in p)]
         self.assertEqual(len(ceilings), 1)
-        # A box has a top, the only polygons that face up above the floor.
+        # Only the top of a box faces up above the floor.
         tops = [p for p in polygons if len({x[2] for x in p}) == 1 and 0 < p[0][2] < 3 and turns_left(p)]
         self.assertEqual(len(tops), 500)
         self.assertLess(volume(polygons), 8 * 8 * 3)

@@ -1,4 +1,4 @@
-"""`patchlight solve --method on-demand`: the same answer as with a stored matrix that is not closed, in little memory."""
+"""`patchlight solve --method on-demand` gives the result of a stored matrix without closure, in little memory."""
 import json
 import math
 import unittest
@@ -18,21 +18,21 @@ class OnDemandTest(ToolTest):
     reports = []
 
     def both(self):
-        """Made once."""
+        """The reports of both methods, computed once."""
         size = ("--patches", 300, "--tolerance", TOLERANCE)
         if not self.reports:
             self.reports.extend([self.report(*size, "--no-closure"), self.report(*size, "--method", "on-demand")])
         return self.reports
 
     def difference(self, report, band):
-        """A bound on ||B_1 - B_2||_A for two solutions of the same equations: each stops at ||B* - B||_A <= tolerance
-        ||B - E||_A, and ||B - E||_A <= sqrt(A) max rho H."""
+        """A bound on ||B_1 - B_2||_A for two solutions of the same equations: each stops at ||B* - B||_A <=
+        tolerance ||B - E||_A, and ||B - E||_A <= sqrt(A) max rho H."""
         reflected = max(m["reflectance"][band] * m["irradiance_max_W_m2"][band] for m in report["materials"])
         return 2 * TOLERANCE * math.sqrt(report["mesh"]["area_m2"]) * reflected
 
     def test_agrees_with_the_stored_matrix(self):
-        """On the patches of a material of area A, H = (B - E) / rho: by Cauchy and Schwarz its mean is off by at most
-        ||B_1 - B_2||_A / (rho sqrt(A))."""
+        """On the patches of a material of area A, H = (B - E) / rho, so by Cauchy and Schwarz its mean has an error
+        of at most ||B_1 - B_2||_A / (rho sqrt(A))."""
         stored, on_demand = self.both()
         self.assertTrue(on_demand["solution"]["converged"])
         self.assertEqual(on_demand["mesh"]["area_m2"], stored["mesh"]["area_m2"])
@@ -50,9 +50,9 @@ class OnDemandTest(ToolTest):
         self.assertEqual(compared, 3)
 
     def test_what_is_not_known_is_null(self):
-        """Without row sums the form factors' defect counts as imbalance. It is found from two solutions: their absorbed
-        fluxes differ by at most sum A |B_1 - B_2| (1 + 1 / rho) <= sqrt(A) ||B_1 - B_2||_A (1 + 1 / rho), where the 1
-        is for the lamp, which does not reflect; the solver's own imbalance is as small."""
+        """Without row sums the defect of the form factors counts as imbalance. Two solutions determine it: their
+        absorbed fluxes differ by at most sum A |B_1 - B_2| (1 + 1 / rho) <= sqrt(A) ||B_1 - B_2||_A (1 + 1 / rho).
+        The 1 is for the lamp, which does not reflect; the solver's own imbalance is as small."""
         stored, on_demand = self.both()
         transport = on_demand["transport"]
         for key in ("facing_pairs", "shadow_rays", "raw_row_sum", "row_sum"):
@@ -83,7 +83,8 @@ class OnDemandTest(ToolTest):
         self.assertNotIn(b'"row_sum"', (self.folder / "a.vtp").read_bytes())
 
     def test_a_first_picture_after_a_share_of_the_rows(self):
-        """Rows are the lamps' and one per shot. What is under way is estimated for the picture; the summary says so."""
+        """The lamps take one row each, and so does each shot. The picture includes an estimate of unshot light,
+        which the summary mentions."""
         report = self.report("--patches", 400, "--method", "on-demand", "--max-rows", "10%", "--picture", "early.png",
                              "--size", "80x60", code=NOT_CONVERGED)
         last = report["solution"]["iterations"][-1]

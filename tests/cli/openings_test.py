@@ -9,11 +9,11 @@ from support import ToolTest
 
 WALLS = 200
 FORMATS = ("hbjson", "xml", "ifc", "gltf", "obj")
-THICKNESS = 0.2  # of walls of IFC, m
+THICKNESS = 0.2  # of IFC walls, m
 
 
 class Wall:
-    """Windows stand in columns, each around the middle line of its column; lengths are whole millimetres."""
+    """A wall with columns of windows, each around the middle line of its column. Lengths are whole millimeters."""
 
     def __init__(self, name, generator, windows, size=None, place=(0, 0, 0, 0)):
         self.name = name
@@ -22,7 +22,7 @@ class Wall:
         self.columns = self.random_columns(generator, windows)
 
     def random_columns(self, generator, windows):
-        """Per column its middle and the windows from below, (left, right, bottom, top)."""
+        """The middle of each column and its windows from the bottom up, (left, right, bottom, top)."""
         number = generator.randint(1, windows)
         counts = [windows // number + (k < windows % number) for k in range(number)]
         columns, wide = [], self.width / number
@@ -45,7 +45,7 @@ class Wall:
         return 2 * (self.width + self.height) + sum(2 * (b - a + d - c) for a, b, c, d in self.windows())
 
     def point(self, u, v, w=0):
-        """Of the wall's coordinates along, up and across it."""
+        """The point with the wall's coordinates along, up and across it."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return [self.x + u * cos - w * sin, self.y + u * sin + w * cos, self.z + v]
 
@@ -53,7 +53,7 @@ class Wall:
         return [(0, 0), (self.width, 0), (self.width, self.height), (0, self.height)]
 
     def seamed(self):
-        """One outline of the wall that reaches every window by a seam, which it runs along twice."""
+        """One outline of the wall with a seam to every window, which it follows twice."""
 
         def around(middle, stack):
             if not stack:
@@ -175,7 +175,7 @@ def ifc(walls, thickness=THICKNESS):
 
 
 def gltf(walls):
-    """Triangles in single precision around a node for each wall, y up."""
+    """Triangles in single precision below a node for each wall, y up."""
     data, accessors, meshes, nodes = b"", [], [], []
     for wall in walls:
         points = [(u, v, 0) for triangle in wall.triangles() for u, v in triangle]
@@ -192,7 +192,7 @@ def gltf(walls):
 
 
 def obj(walls):
-    """Polygons with seams and triangles in turn."""
+    """Polygons with seams, alternating with triangles."""
     text, vertices = "", 0
     for k, wall in enumerate(walls):
         text += f"g {wall.name}\n"
@@ -260,7 +260,7 @@ class OpeningsTest(ToolTest):
         (self.folder / "walls.bin").write_bytes(data)
 
     def areas(self, name):
-        """Per wall its area as read, and the problems of the model."""
+        """The area of each wall as read, and the problems of the model."""
         done = self.run_tool("check", name, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         report = json.loads(done.stdout)

@@ -1,4 +1,4 @@
-"""Commands that read a model take the same options for it, and the same decisions about effects."""
+"""Commands that read a model have the same options for it, and decide about effects in the same way."""
 import json
 import unittest
 
@@ -49,7 +49,7 @@ class OptionsTest(ToolTest):
         self.assertEqual(walls, [[[0.3] * 3]] * 2)
 
     def test_solvers_that_serve_rows_of_rays_leave_the_storage_open(self):
-        # More than 10,000 patches: pairs would take gigabytes.
+        # More than 10,000 patches, whose pairs would need gigabytes.
         for solver in ("gmres", "bicgstab"):
             self.good("solve", "room.obj", "--patches", "11000", "--solver", solver, "--json", "report.json", "-q")
             report = json.loads((self.folder / "report.json").read_text())
@@ -57,7 +57,7 @@ class OptionsTest(ToolTest):
             self.assertEqual(report["plan"]["solver"], solver)
 
     def test_maintained_lamps_give_their_share(self):
-        # The light is linear in the lamps, and all of it is theirs.
+        # The light is linear in the lamps, and there is no other light.
         def irradiances(*words, scene="scene.toml"):
             self.good("solve", scene, "--patches", "100", "--json", "report.json", "-q", *words)
             report = json.loads((self.folder / "report.json").read_text())
@@ -74,7 +74,7 @@ class OptionsTest(ToolTest):
         half, _ = irradiances()
         for a, b in zip(new, half):
             self.assertAlmostEqual(b, 0.5 * a, delta=1e-5 * a)
-        # Daylight does not age.
+        # Daylight does not change with the age of lamps.
         self.write("day.toml", DAY)
         day, _ = irradiances(scene="day.toml")
         self.assertGreater(max(each for each in day if each is not None), 0)
@@ -95,7 +95,7 @@ class OptionsTest(ToolTest):
                     self.assertIn(option, words)
 
     def test_paths_leave_out_the_lights_that_are_skipped(self):
-        """The luminaire gives far more than the bar: with it on one side alone both would differ."""
+        """The luminaire emits far more than the bar, so the results would differ if only one side had it."""
         self.write("scene.toml", SCENE)
         means = []
         for skip in ((), ("--disable", "luminaires")):
@@ -108,7 +108,7 @@ class OptionsTest(ToolTest):
         for words in (["--no-closure"], ["--disable", "interreflection"]):
             self.refused([" ".join(words), "--margin"], "crosscheck", "room.obj", *words)
         self.good("crosscheck", "room.obj", "--patches", 400, "--paths", 1024, "--no-closure", "--margin", "5%")
-        # Paths simulate what the solution leaves out.
+        # Paths simulate effects that the solution leaves out.
         done = self.run_tool("crosscheck", "room.obj", "--patches", 400, "--paths", 256, "--disable", "interreflection", "--margin", "2%")
         self.assertIn("DISAGREES", done.stdout)
 
@@ -144,7 +144,7 @@ class OptionsTest(ToolTest):
             self.assertEqual((facts["chosen"], facts["of"]), (sides, 16))
             counts[sides] = facts["take_part"]
             self.assertIn(f"sides ({sides}): {counts[sides]} of 16", self.good("check", "room.obj", "--sides", sides))
-        # The six walls by one side, plate and lamp by two; fronts; all.
+        # One side of the six walls and both sides of plate and lamp; front sides; all sides.
         self.assertEqual(counts, {"auto": 10, "front": 8, "both": 16})
         self.assertIsNone(json.loads(self.good("check", "room.obj", "--json"))["sides"])
 

@@ -1,4 +1,4 @@
-"""The page that the tool writes: --html of solve, relight, compare, study and render."""
+"""The page of the tool: --html of solve, relight, compare, study and render."""
 import base64
 import json
 import re
@@ -9,7 +9,7 @@ from support import ToolTest
 
 
 def data_of(page):
-    """What the page knows."""
+    """The data in the page."""
     return json.loads(re.search(r'id="data">(.*?)</script>', page.read_text(encoding="utf-8"), re.DOTALL)[1])
 
 
@@ -104,7 +104,7 @@ f 2 6 7 3
         self.assertEqual(done.returncode, 1)
 
     def test_faces_under_others_lie_deeper_and_unlit_ones_are_marked(self):
-        # A lit cube with a rug on its floor, and a closed cube beside it that no light gets into.
+        # A lit cube with a rug on its floor, and beside it a closed cube without light.
         cube = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
         lines, corner = [], 0
         for left, size in ((0, 1), (3, 0.5)):

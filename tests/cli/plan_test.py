@@ -1,4 +1,4 @@
-"""patchlight plan: what is simulated, why and at what cost; --enable and --disable, and what results say about them."""
+"""patchlight plan: simulated effects, their reasons and costs; --enable and --disable, and their mention in results."""
 import json
 import math
 import unittest
@@ -80,7 +80,7 @@ class PlanTest(ToolTest):
         plan = self.plan("--patches", "1000")
         self.assertEqual(list(plan["by_effect"]), EFFECTS)
         on = {effect for effect, decision in plan["by_effect"].items() if decision["simulate"]}
-        # The walls are not grey; all lamps are inside, so the outer sides are dark; there are no other lights.
+        # The walls are not gray. All lamps are inside, so the outer sides are dark. There are no other lights.
         self.assertEqual(on, {"occlusion", "interreflection", "color", "reach", "closure"})
         self.assertLess(abs(plan["expected"]["patches"] - 1000), 100)
         self.assertGreater(plan["expected"]["seconds"], 0)

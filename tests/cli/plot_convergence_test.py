@@ -1,4 +1,4 @@
-"""scripts/plot_convergence.py: plots where matplotlib is, a message where it is not."""
+"""scripts/plot_convergence.py draws plots with matplotlib and prints a message without it."""
 import importlib.util
 import os
 import pathlib
@@ -14,7 +14,7 @@ with_matplotlib = unittest.skipUnless(importlib.util.find_spec("matplotlib"), "m
 
 
 def history(solvers):
-    """Solver s reaches 1e-8 in 3 + 19 s iterations; the bound of the first is not known, the last error is 0."""
+    """Solver s reaches 1e-8 in 3 + 19 s iterations; the bound of the first is unknown, and the last error is 0."""
     rows = []
     for s in range(solvers):
         last = 3 + 19 * s

@@ -1,4 +1,4 @@
-"""What patchlight promises about its files: old or whole and new, whatever happens; any name; any number of threads."""
+"""Guarantees about files: old or complete and new in all cases; any name; any number of threads."""
 import json
 import os
 import random
@@ -25,7 +25,7 @@ def arguments(model="room.obj", picture=True):
 
 
 def whole_vtp(data):
-    """Header and end; the appended data in between are as long as the offsets of the arrays and their blocks say."""
+    """Checks header and end; the appended data match the offsets of the arrays and the sizes of their blocks."""
     begin = data.index(b"_", data.index(b"<AppendedData")) + 1
     last = max(int(offset) for offset in re.findall(rb'offset="(\d+)"', data[:begin]))
     # Per array: number of blocks, size of a block, size of the last one, compressed sizes; then the blocks.
@@ -81,7 +81,7 @@ class PromisesTest(ToolTest):
             (self.folder / name).write_bytes(OLD)
 
     def assert_old_or_whole(self, path):
-        """True when the file is new."""
+        """Returns True if the file is new."""
         if path.suffix != ".pvd":
             data = path.read_bytes()
             self.assertTrue(data == OLD or WHOLE[path.suffix](data), f"{path.name} is neither old nor whole")
@@ -95,12 +95,12 @@ class PromisesTest(ToolTest):
         return True
 
     def test_killed_at_any_moment(self):
-        """Twenty moments; without a picture, which takes longest, much of the run is writing."""
+        """Kills at twenty moments; without a picture, which takes longest, writing is much of the run."""
         moments = random.Random(6502)
         for picture, count in ((False, 17), (True, 3)):
             self.run_and_kill(picture, moments, count)
 
-        # The next run removes what the killed ones left.
+        # The next run removes the temporary files of killed runs.
         left = self.folder / ".patchlight-1-0.vtp"
         left.write_bytes(b"half")
         subprocess.run(arguments(), cwd=self.folder, check=True, capture_output=True)
@@ -110,9 +110,8 @@ class PromisesTest(ToolTest):
     def run_and_kill(self, picture, moments, count):
         """Kills `count` runs at random moments.
 
-        A run that ended before its moment shows that runs take less time than was thought: later moments are drawn
-        below that one, so that on a machine of any load runs are killed in the end.
-        """
+        If a run ends before its moment, later moments are drawn below that one, so that runs are killed on a machine
+        under any load."""
         started = time.monotonic()
         subprocess.run(arguments(picture=picture), cwd=self.folder, check=True, capture_output=True)
         duration = time.monotonic() - started
@@ -141,14 +140,14 @@ class PromisesTest(ToolTest):
         self.assertEqual(content(folder), before)
 
     def test_file_that_cannot_grow(self):
-        """Files may have 2000 bytes: the result does not fit."""
+        """Files may have 2000 bytes, and the result does not fit."""
         self.put_old()
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
         self.assert_full_disk_is_refused(self.folder, preexec_fn=limit)
 
     def test_full_disk(self):
-        """A file system in memory of a few pages."""
+        """A file system in memory with a few pages."""
         disk = self.folder / "disk"
         disk.mkdir()
         mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48k", "tmpfs", disk], capture_output=True,

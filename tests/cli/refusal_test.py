@@ -1,4 +1,4 @@
-"""What cannot be done is refused: one sentence on stderr, the documented exit code, no file touched."""
+"""Impossible requests are refused with one sentence on stderr and the documented exit code, and change no file."""
 import unittest
 
 from support import MATERIALS, ROOM, ToolTest, content, is_one_message
@@ -14,7 +14,7 @@ class RefusalTest(ToolTest):
         self.write("spots.txt", "0 0 0.5 0 0 1\n")
 
     def assert_refused(self, code, named, *arguments):
-        """The run fails with this code and one sentence that names each of these words; the folder stays as it was."""
+        """The run fails with this code and one sentence that has each of these words; the folder stays unchanged."""
         before = content(self.folder)
         done = self.run_tool(*arguments)
         self.assertEqual(done.returncode, code, done.stderr)
@@ -98,7 +98,7 @@ class RefusalTest(ToolTest):
         self.assert_refused(OUTPUT, ["no/a.pvd"], "solve", "room.obj", "--series", "no/a.pvd")
 
     def test_more_than_the_memory_allowed(self):
-        """Half of the n^2 pairs in four bytes each: 40,000 patches need 3.2 GB and a little."""
+        """Half of the n^2 pairs with four bytes each: 40,000 patches need just over 3.2 GB."""
         solve = ("solve", "room.obj", "-o", "room.vtp")
         for size in ("2GB", "2 GB", "2e9", "1900MiB", "1.8GiB", "2000000kB"):
             with self.subTest(size):
@@ -106,7 +106,7 @@ class RefusalTest(ToolTest):
                 self.assert_refused(MEMORY, named, *solve, "--method", "pairs", "--patches", 40000, "--memory", size)
         self.assert_refused(MEMORY, ["patches", "--memory"], *solve, "--max-edge", "0.005", "--memory", "1GB")
         self.assert_refused(MEMORY, ["program itself"], *solve, "--memory", "10MB")
-        # What nobody has, before a single patch is made.
+        # No machine has this memory; the run must fail before it makes a single patch.
         self.assert_refused(MEMORY, ["patches"], *solve, "--patches", 1000000000)
         self.assert_refused(MEMORY, ["patches"], *solve, "--max-edge", "1e-9")
 
@@ -132,7 +132,7 @@ class RefusalTest(ToolTest):
         self.assert_refused(USAGE, ["solve"])
 
     def test_a_file_in_place_of_a_command(self):
-        """The line that is meant."""
+        """The message suggests the intended command."""
         self.write("two words.OBJ", ROOM)
         self.write("notes.txt", "")
         for words, line in ((["room.obj"], "room.obj -o room.vtp"), (["far/missing.ifc"], "far/missing.ifc -o missing.vtp"),
@@ -140,7 +140,7 @@ class RefusalTest(ToolTest):
                             (["room.obj", "--patches", "9", "-o", "a.ply"], "room.obj --patches 9 -o a.ply")):
             with self.subTest(line):
                 self.assert_refused(USAGE, [f"'{words[0]}'", f"patchlight solve {line}\n"], *words)
-        # Of a file that is there and no model the line would not be right.
+        # For an existing file that is not a model, the suggestion would be wrong.
         self.assert_refused(USAGE, ["'notes.txt'"], "notes.txt")
         self.assertNotIn("patchlight solve", self.run_tool("notes.txt").stderr)
 

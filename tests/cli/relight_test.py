@@ -9,9 +9,9 @@ from support import ROOM, ToolTest, content
 
 GOOD, USAGE, INPUT, MEMORY, NOT_CONVERGED = 0, 1, 2, 4, 3
 
-# Of a stored form factor rounding takes 5 * 2^-24 = 3e-7 at most, and what it takes of a row's sum stays with the row.
-# Entries that are off by this share change the irradiance by 1 + rho / (1 - rho) times as much if all of them err alike:
-# 3e-7 * (1 + 0.7 / 0.3) = 1e-6. The solver's error, 1e-10, does not count beside it, nor do the nine digits of the CSV.
+# Rounding changes a stored form factor by at most 5 * 2^-24 = 3e-7; the rest of a row's sum stays with the row. If all
+# entries have this relative error with one sign, irradiance changes by 1 + rho / (1 - rho) times as much: 3e-7 * (1 +
+# 0.7 / 0.3) = 1e-6. The solver's error of 1e-10 and the nine digits of the CSV are negligible.
 FLOAT_STORAGE = 1e-6
 EXACT = ["--tolerance", "1e-10"]
 
@@ -61,7 +61,7 @@ class RelightTest(ToolTest):
                 self.assertAlmostEqual(a, b, delta=relative * abs(b))
 
     def leave_the_folder_alone(self):
-        """Moves the folder and removes the model: what is left is all that relight has."""
+        """Moves the folder and removes the model, so that relight has only the folder."""
         (self.folder / "elsewhere").mkdir()
         shutil.move(self.folder / "room.ff", self.folder / "elsewhere" / "moved.ff")
         for name in ("room.obj", "room.mtl"):
@@ -92,10 +92,10 @@ class RelightTest(ToolTest):
             file.write("newmtl shed\nKd 0.5 0.5 0.5\n")
         self.find()
         done = self.good("relight", "room.ff", "--json", "lit.json", "--set", "shed.exitance=1")
-        # The shed's faces look inward, where no lamp was.
+        # The shed's faces look inward, and there was no lamp.
         self.assertIn("material 'shed' emits, but no light comes from it", done.stderr)
         self.assertIn("would be included that were left out", done.stderr)
-        # The patches stay those of then.
+        # The patches stay those of the stored form factors.
         done = self.good("relight", "room.ff", "--json", "dark.json")
         self.assertNotIn("left out of the form factors", done.stderr)
         self.assertEqual(self.report("lit.json")["mesh"], self.report("dark.json")["mesh"])
@@ -105,7 +105,7 @@ class RelightTest(ToolTest):
         for name, exitance in (("one", "10,9,8"), ("two", "20,18,16")):
             self.good("relight", "room.ff", "--json", f"{name}.json", "--set", f"lamp.exitance={exitance}")
         one, two = self.report("one.json"), self.report("two.json")
-        # A factor of 2 changes no digit of a sum of floating-point numbers, and the solver stops at the same iteration.
+        # A factor of 2 changes no digit of a floating-point sum, and the solver stops at the same iteration.
         for key in ("irradiance_min_W_m2", "irradiance_mean_W_m2", "irradiance_max_W_m2"):
             for before, after in zip(one["materials"], two["materials"]):
                 self.assertGreater(min(before[key]), 0)
@@ -157,7 +157,7 @@ class RelightTest(ToolTest):
         bodies = set()
         for threads in ("1", "3"):
             self.good("relight", "room.ff", "-o", "a.ply", "--threads", threads)
-            # The header names the command line.
+            # The header has the command line.
             bodies.add((self.folder / "a.ply").read_bytes().split(b"end_header\n", 1)[1])
         self.assertEqual(len(bodies), 1)
 
@@ -229,7 +229,7 @@ class RelightTest(ToolTest):
 
 
     def test_rows_of_rays_take_any_light(self):
-        """B is linear in E: a lamp of twice the exitance gives twice the light, to the digits written."""
+        """B is linear in E: a lamp of twice the exitance gives twice the light, to the written digits."""
         self.find("--method", "rays", folder="rays.ff")
         for name, words in (("once", ["--set", "lamp.radiance=10"]), ("twice", ["--set", "lamp.radiance=20"])):
             self.good("relight", "rays.ff", *words, "--json", name + ".json", "-o", name + ".vtp")
@@ -245,7 +245,7 @@ class RelightTest(ToolTest):
         self.assertIn("--solver cg", refused.stderr)
 
     def test_keeps_luminaires_sun_and_sky(self):
-        """Light that comes from elsewhere than faces is found anew; another sky takes the place of that of then."""
+        """Light from sources other than faces is recomputed; another sky replaces the stored one."""
         lights = """[[luminaire]]
 kind = "point"
 position = [0.2, 0.1, 1.5]
@@ -276,7 +276,7 @@ points = [[0.1, 0.2, 0.5, 0, 0, 1]]
         self.assertEqual(self.report("again.json")["sensors"]["groups"][0]["name"], "desk")
 
     def test_colours_of_panes_and_mirrors(self):
-        """Rows that were found with a grey pane and mirror are those that are found with coloured ones."""
+        """Rows traced with a gray pane and mirror equal those traced with colored ones."""
         self.write("panes.obj", """mtllib panes.mtl
 v -1 -1 0
 v 1 -1 0

@@ -11,7 +11,8 @@ from support import TOOL, ToolTest
 
 
 def radiances(data):
-    """(header, rows of (r, g, b)) of a .hdr whose scanlines have runs, by the published format: Ward 1991, Real pixels."""
+    """(header, rows of (r, g, b)) of a .hdr with run-length encoded scanlines, by the published format: Ward 1991,
+    Real pixels."""
     header, rest = data.split(b"\n\n", 1)
     size, rest = rest.split(b"\n", 1)
     height, width = (int(word) for word in size.split()[1::2])
@@ -74,13 +75,13 @@ class RenderTest(ToolTest):
         return (self.folder / name).read_bytes()
 
     def test_a_picture_of_a_file_is_that_of_the_run(self):
-        # The file has single precision: the picture is that of the run, but for rounding to eight bits.
+        # The file has single precision, so the picture equals that of the run except for rounding to eight bits.
         self.solve("--picture", "of_run.hdr", "--picture-quality", "final", "--size", "24x16")
         self.good("render", "room.obj", "--solution", "room.vtp", "-o", "of_file.hdr", *SMALL)
         (run_header, run), (file_header, file) = (radiances(self.bytes_of(name)) for name in ("of_run.hdr", "of_file.hdr"))
         self.assertEqual(run_header, file_header)
         self.assertEqual(len(run), 24 * 16)
-        # Rounding of radiosities to single precision moves a mantissa of eight bits by one step at most.
+        # Rounding radiosities to single precision changes a mantissa of eight bits by at most one step.
         for a, b in zip(run, file):
             for x, y in zip(a, b):
                 self.assertLessEqual(abs(x - y), 1.01 * max(a) / 128)
@@ -143,7 +144,7 @@ class RenderTest(ToolTest):
         self.solve()
         self.good("solve", "room.obj", "--patches", "400", "-o", "fine.vtp", "-q")
         self.good("render", "room.obj", "--solution", "room.vtp", "--difference", "fine.vtp", "-o", "both.png", *SMALL)
-        # Width and height of a PNG stand behind its first 16 bytes.
+        # Width and height of a PNG follow its first 16 bytes.
         width, height = struct.unpack(">2I", self.bytes_of("both.png")[16:24])
         self.assertEqual(height, 16)
         self.assertGreater(width, 3 * 24)

@@ -1,7 +1,7 @@
-"""The model that the tests of the command-line tool share with the scripts that try it."""
+"""The model that the tests of the command-line tool share with the scripts that exercise it."""
 
-# A closed room of 2 x 2 x 2 m whose faces look inward, with a lamp of 0.5 x 0.5 m that hangs below the ceiling and looks
-# down, and a plate in the middle.
+# A closed room of 2 x 2 x 2 m whose faces look inward. A lamp of 0.5 x 0.5 m hangs below the ceiling and faces down,
+# and a plate is in the middle.
 ROOM = """mtllib room.mtl
 v -1 -1 0
 v 1 -1 0

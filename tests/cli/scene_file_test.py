@@ -45,7 +45,7 @@ class SceneFileTest(ToolTest):
             self.assertIn(part, done.stderr)
 
     def test_sensors_inside_a_wall_are_marked_and_left_out(self):
-        # The dividing wall of the two rooms is 0.1 m thick, from x = 4, and has a door from y = 1 to 1.9.
+        # The wall between the two rooms is 0.1 m thick, starts at x = 4, and has a door from y = 1 to 1.9.
         points = ", ".join(f"[{x}, {y}, 0.8, 0, 0, 1]" for x in (3, 4.05, 5) for y in (0.5, 1.4, 2.4))
         rows = self.readings(f'[[model]]\nfile = "{MESHES}/two_rooms.obj"\n[[sensors]]\nname = "plane"\n'
                              f'points = [{points}]\n', "--patches", 500, "--json", "report.json")
@@ -72,7 +72,8 @@ class SceneFileTest(ToolTest):
             self.assertTrue(all(float(row["E_v_lx"]) >= 0 for row in rows if row["inside_wall"] == "0"))
             report = json.loads((self.folder / f"{k}.json").read_text())
             self.assertEqual(report["sensors"]["unit"], "lx")
-            # A grid over a floor has no sensors in the dividing wall; the rectangle of the Cornell box goes through blocks.
+            # A grid over a floor has no sensors in the dividing wall; the rectangle of the Cornell box goes through
+            # blocks.
             groups = report["sensors"]["groups"]
             inside = [0, 4][k]
             self.assertEqual([group["inside_walls"] for group in groups], [inside, 0])
@@ -91,11 +92,11 @@ class SceneFileTest(ToolTest):
         self.write("spots.pts", "0 0 0.984251968503937 0 0 1\n1.6404199475065617 0.6561679790026247 4.921259842519685 1 0 1\n")
         self.solve("room.obj", "--unit", "ft", "--set", "white.reflectance=0.3,0.4,0.5", "--set", "lamp.radiance=3",
                    *common, "-o", "b.ply", "--points-output", "b.csv")
-        # What follows the header, in which the command lines differ.
+        # Only the bodies, as the headers have different command lines.
         bodies = [(self.folder / name).read_bytes().split(b"end_header\n")[1] for name in ("a.ply", "b.ply")]
         self.assertEqual(bodies[0], bodies[1])
         for a, b in zip(self.rows("a.csv"), self.rows("b.csv")):
-            # The points are the same to 1e-16, not to the last bit.
+            # The points are the same to 1e-16, but not to the last bit.
             self.assertAlmostEqual(float(a["E_r"]), float(b["E_r"]), delta=1e-6 * float(b["E_r"]))
 
     # E = I h / (h^2 + r^2)^1.5 with I = 10,000 lm / 4 pi at h = 3 m
@@ -112,7 +113,8 @@ class SceneFileTest(ToolTest):
     def test_under_an_open_overcast_sky_daylight_factors_are_known(self):
         rows = self.readings('up = "z"\n[[model]]\nfile = "ground.obj"\n[sky]\nkind = "overcast"\nilluminance = 10000\n'
                              '[[sensors]]\npoints = [[0, 0, 1, 0, 0, 1], [0, 0, 1, 1, 0, 0]]\n', "--patches", 10)
-        # Horizontal: all of it; a facade over black ground: 39.62 % (Moon and Spencer's sky, integrated).
+        # A horizontal plane receives all of it; a facade over black ground 39.62 % (integral of Moon and Spencer's
+        # sky).
         for row, expected in zip(rows, (100, 39.62)):
             error = 100 * float(row["SE_v_lx"]) / 10000
             self.assertAlmostEqual(float(row["daylight_factor_percent"]), expected, delta=0.05 + 3 * error)
@@ -190,7 +192,7 @@ class SceneFileTest(ToolTest):
         done = self.run_tool("form-factors", "lit.toml", "-o", "lit.ff", "--patches", 200, "--no-contact-lines", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.solve("lit.toml", "--form-factors", "lit.ff", "--points-output", "stored.csv", "-q")
-        # Patches do not end at the edges of shadows here: form factors that are kept know of no lights.
+        # Patches do not end at the edges of shadows here, as stored form factors do not depend on lights.
         self.solve("lit.toml", "--patches", 200, "--no-contact-lines", "--no-error-bars", "--points-output", "anew.csv",
                    "-q")
         done = self.run_tool("relight", "lit.ff", "--points-output", "relit.csv", "-q")

@@ -1,4 +1,4 @@
-"""What `patchlight solve` delivers: all files, the same bytes for any number of threads, or none when it is stopped."""
+"""Outputs of `patchlight solve`: all files with the same bytes for any number of threads, or none if it is stopped."""
 import csv
 import json
 import os
@@ -107,7 +107,7 @@ class SolveTest(ToolTest):
         self.assertTrue((self.folder / "results" / "spots.irradiance.csv").is_file())
 
     def test_units_scale_everything_alike(self):
-        """Irradiance depends on angles only: the same model read in other units gives the same, up to rounding."""
+        """Irradiance depends on angles only: the same model in other units has the same irradiance, up to rounding."""
         values = []
         for unit in ("m", "in"):
             self.solve("--unit", unit, "--max-edge", 0.4, "--points", "spots.txt", "--points-output", unit + ".csv")
@@ -117,7 +117,8 @@ class SolveTest(ToolTest):
             self.assertAlmostEqual(in_inches / in_metres, 1, delta=1e-4)
 
     def test_light_adds_up(self):
-        """B is linear in E: a lamp of twice the radiance gives twice the irradiance, to the bit as 2 is a power of two."""
+        """B is linear in E: twice the radiance of a lamp gives twice the irradiance, to the bit, since 2 is a power
+        of two."""
         values = []
         for radiance in (8, 16):
             self.solve("--patches", 200, "--set", f"lamp.radiance={radiance}", "--points", "spots.txt",
@@ -125,11 +126,11 @@ class SolveTest(ToolTest):
             rows = list(csv.reader(self.read("spots.csv").decode().splitlines()))[1:]
             values.append([float(value) for row in rows for value in row[6:9]])
         for single, double in zip(*values):
-            self.assertAlmostEqual(double / single, 2, delta=1e-5)  # the digits written
+            self.assertAlmostEqual(double / single, 2, delta=1e-5)  # the written digits
 
     def test_noise_of_rays_in_the_flux_is_said(self):
-        """Of R rays that carry equal parts of the flux 1 / sqrt(R) is off, 64 a patch; and what is far less needs no
-        reason, as in the closed room."""
+        """R rays with equal parts of the flux, 64 per patch, have a relative error of 1 / sqrt(R). A much smaller
+        imbalance, as in the closed room, needs no explanation."""
         box = pathlib.Path(os.environ["PATCHLIGHT_MESHES"]).resolve() / "cornell_box.obj"
         for model, is_said in ((box, True), ("room.obj", False)):
             done = self.run_tool("solve", model, "--method", "rays", "--patches", 900, "--json", "a.json")
@@ -166,10 +167,11 @@ class SolveTest(ToolTest):
         verbose = self.solve("--patches", 100, "-o", "out.vtp", "-v")
         self.assertNotIn("shadow rays", normal.stdout)
         self.assertIn("shadow rays", verbose.stdout)
-        self.assertNotRegex(normal.stderr, r"\r")  # no line that is rewritten where stderr is not a terminal
+        self.assertNotRegex(normal.stderr, r"\r")  # no progress line if stderr is not a terminal
 
     def test_not_converged_is_written_and_explained(self):
-        """With white walls of reflectance 0.99999 Jacobi needs tens of thousands of iterations: the lamp alone absorbs."""
+        """With white walls of reflectance 0.99999 only the lamp absorbs, and Jacobi needs tens of thousands of
+        iterations."""
         done = self.solve("--patches", 100, "--set", "white.reflectance=0.99999", "--solver", "jacobi", "-o", "out.vtp",
                           code=NOT_CONVERGED)
         self.assertIn("out.vtp", self.names())
@@ -177,7 +179,7 @@ class SolveTest(ToolTest):
         self.assertIn("0.99999", done.stderr)
 
     def test_what_noise_of_rays_does_not_explain_is_not_put_down_to_it(self):
-        """After two bounces some 15 % of the flux are still under way, and one over the root of all rays is 0.4 %."""
+        """After two bounces about 15 % of the flux is unshot, and the noise of all rays is 1 / sqrt(R) = 0.4 %."""
         done = self.solve("--patches", 900, "--method", "rays", "--solver", "jacobi", "--max-iterations", 2,
                           "--json", "a.json", code=NOT_CONVERGED)
         self.assertRegex(done.stdout, r"imbalance \S+ of the flux, more than the noise of the rays explains: up to a few")
@@ -192,7 +194,7 @@ class SolveTest(ToolTest):
                 self.assertEqual(self.names(), before)
 
     def test_interrupt_writes_what_is_there(self):
-        """A solution on demand takes minutes; its last iterate is there at any time."""
+        """A solution on demand takes minutes; its last iterate is available at any time."""
         options = ["--method", "on-demand", "--patches", "4000", "--json", "out.json"]
         outputs = {"out.vtp", "out.png", "out.json"}
         for sent in SIGNALS:
@@ -235,7 +237,8 @@ class SolveTest(ToolTest):
                 self.assertEqual(self.names(), before)
 
     def interrupt_in_stage(self, stage, sent, options=("--patches", "12000", "--method", "pairs", "--samples", "4096")):
-        """Starts a run of minutes on a terminal, sends the signal once the stage shows; what was shown, the exit code."""
+        """Starts a run of minutes on a terminal and sends the signal during the stage; returns the terminal's text
+        and the exit code."""
         ours, theirs = pty.openpty()
         command = [TOOL, "solve", "room.obj", *options, "-o", "out.vtp", "--picture", "out.png"]
         with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
@@ -244,7 +247,7 @@ class SolveTest(ToolTest):
             while not re.search(stage, shown):
                 shown += os.read(ours, 4096)
             process.send_signal(sent)
-            # The tool promises a second; a run that overlooks the signal takes minutes.
+            # The tool reacts within a second; a run that ignores the signal takes minutes.
             code = process.wait(timeout=30)
             try:
                 while part := os.read(ours, 4096):

@@ -1,4 +1,4 @@
-"""Damaged models: every one is solved or refused with a message, none crashes, hangs or prints a nan.
+"""Damaged models: every one is solved or refused with a message, and none crashes, hangs or prints a nan.
 
 usage: sponge_test.py [RUNS [SEED [PROCESSES]]]
 
@@ -66,8 +66,7 @@ def replace_numbers(data, chance):
 def exchange_corners(data, chance):
     """Other vertices for some faces: bent, crossing, doubled and empty ones.
 
-    Those with very many corners are cut into thousands of patches where there are many of them: at most five at once.
-    """
+    Many faces with very many corners would give thousands of patches each, so at most five of them change at once."""
     lines = data.split(b"\n")
     faces = [k for k, line in enumerate(lines) if line.startswith(b"f ")]
     vertices = sum(line.startswith(b"v ") for line in lines)
@@ -99,7 +98,7 @@ def damaged(model, chance):
 
 
 def complaint(done, command):
-    """What is wrong with a run; nothing when it behaved."""
+    """The fault of a run; None if there is none."""
     output = done.stdout + done.stderr
     if done.returncode not in (GOOD, INPUT, NOT_CONVERGED, OUT_OF_MEMORY):
         return f"exit code {done.returncode}"
@@ -127,7 +126,7 @@ def run(folder, name, command):
 
 
 def try_model(seed, number):
-    """Damages one model and runs the commands on it; the exit codes by command, and the number of failures."""
+    """Damages one model and runs the commands on it; returns the exit codes by command and the number of failures."""
     chance = random.Random(seed * 1_000_003 + number)
     model = chance.choice(sorted(MESHES.glob("*.obj")))
     codes = collections.Counter()

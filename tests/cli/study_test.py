@@ -1,4 +1,4 @@
-"""patchlight convergence: what accuracy costs."""
+"""patchlight convergence: the cost of accuracy."""
 import csv
 import json
 import unittest
@@ -40,12 +40,12 @@ class StudyTest(ToolTest):
                 self.assertAlmostEqual(float(row[key]), setting[key], delta=1e-8 * abs(setting[key]))
             stages = sum(float(row[key]) for key in COLUMNS if key.endswith("_cpu_seconds"))
             self.assertAlmostEqual(stages, float(row["cpu_seconds"]), delta=1e-6)
-        # The last line but one is the sentence.
+        # The last line but one is the conclusion.
         self.assertEqual(done.stdout.splitlines()[-2], facts["conclusion"])
         self.assertIn("the largest error comes from", facts["conclusion"])
 
     def check_errors(self, rows, facts):
-        """They fall with the patches."""
+        """Errors fall as the number of patches grows."""
         fine = [row for row in rows if row["sweep"] == "patch size at 32 samples"]
         self.assertGreater(len(fine), 1)
         for before, after in zip(fine, fine[1:]):

@@ -1,4 +1,4 @@
-"""What the tests of the command-line tool share: small models, running the tool, looking at a folder."""
+"""Shared by the tests of the command-line tool: small models, running the tool, looking at a folder."""
 import os
 import pathlib
 import re
@@ -11,12 +11,12 @@ from room import MATERIALS, ROOM
 TOOL = os.environ["PATCHLIGHT_TOOL"]
 
 
-# What is said every ten seconds: on a slow machine now and then, which is no message.
+# Progress lines, printed every ten seconds, which a slow machine may cause; they are not messages.
 PROGRESS = re.compile(r"^patchlight: (?!error|note|warning).* \d+ %(, .* left)?\n", re.MULTILINE)
 
 
 def run(*arguments, folder, timeout=600, text=""):
-    """Runs the tool in a folder, with a text on its standard input; its output as text, without progress."""
+    """Runs the tool in a folder with a text on its standard input; returns its output as text, without progress."""
     words = [str(argument) for argument in arguments]
     done = subprocess.run([TOOL, *words], cwd=folder, input=text, capture_output=True, text=True, timeout=timeout,
                           check=False)
@@ -25,7 +25,7 @@ def run(*arguments, folder, timeout=600, text=""):
 
 
 def is_one_message(text):
-    """Whether a text is one line, and lines with hints after it."""
+    """Whether a text is one line followed by lines with hints."""
     first, *others = text.splitlines()
     return first.startswith("patchlight: ") and all(line.startswith("hint: ") for line in others)
 
@@ -39,7 +39,7 @@ def content(folder):
 
 
 class ToolTest(unittest.TestCase):
-    """A test with a folder of its own that holds room.obj."""
+    """A test with a temporary folder that holds room.obj."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="patchlight-test-")

@@ -1,4 +1,4 @@
-"""The files of a run appear together, and runs at the same time do not mix theirs; a few seconds of damaged files."""
+"""The files of a run appear together, and simultaneous runs do not mix theirs; a few seconds of damaged files."""
 import json
 import pathlib
 import subprocess
@@ -23,25 +23,25 @@ class TogetherTest(ToolTest):
                 "--series", "a.pvd", *more]
 
     def test_runs_with_one_series(self):
-        """Of ten at a time the last decides; at every moment the .pvd names files that are there."""
+        """The last of ten simultaneous runs wins; at every moment the .pvd names existing files."""
         runs = [subprocess.Popen(self.words(k + 1, "--json", "a.json"), cwd=self.folder, stderr=subprocess.PIPE) for k in range(10)]
         pvd = self.folder / "a.pvd"
         while any(run.poll() is None for run in runs):
             if pvd.exists():
-                # Named by the .pvd of this moment, and removed by that of a later one at most.
+                # The present .pvd names them; at most a later one removes them.
                 before = pvd.read_bytes()
                 there = [file.exists() for file in series(pvd)]
                 self.assertTrue(all(there) or pvd.read_bytes() != before)
         self.assertEqual([run.communicate()[1] for run in runs], 10 * [b""])
         self.assertEqual([run.returncode for run in runs], 10 * [0])
         self.assertEqual(sorted(series(pvd)), sorted((self.folder / "a_series").iterdir()))
-        # The files are of one run.
+        # All files come from one run.
         comment = [line for line in (self.folder / "a.ply").read_bytes().split(b"\n") if b"lamp.exitance" in line][0]
         report = json.loads((self.folder / "a.json").read_text())
         self.assertEqual(comment.decode().removeprefix("comment "), report["command_line"])
 
     def test_one_that_cannot_be_written_leaves_all_as_they_were(self):
-        """The last file is too long for the disk quota of the process."""
+        """The last file exceeds the file size limit of the process."""
         subprocess.run(self.words(1, "--json", "a.json"), cwd=self.folder, check=True)
         before = content(self.folder)
         limit = (self.folder / "a.ply").stat().st_size + 100

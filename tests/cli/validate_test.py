@@ -1,4 +1,4 @@
-"""patchlight selftest: cases with known answers, with a verdict each."""
+"""patchlight selftest: cases with known results and a verdict each."""
 import json
 import os
 import pty
@@ -21,7 +21,7 @@ class ValidateTest(ToolTest):
             self.assertIn(case["case"], done.stdout)
             self.assertLessEqual(abs(case["computed"] - case["exact"]), case["error_bar"], case["case"])
             self.assertTrue(case["within_bar"])
-            # A bar that allows for everything would say nothing: an error of two in a hundred must show.
+            # A very wide bar would prove nothing: an error of two percent must show.
             self.assertLess(case["error_bar"], 0.02 * abs(case["exact"]), case["case"])
             self.assertTrue(case["exact_from"] and case["error_bar_from"])
         self.assertIn(f"{len(report['cases'])} cases, 0 outside", done.stdout)

@@ -44,7 +44,7 @@ class VerifyTest(ToolTest):
         self.assertTrue(all(" front " in row for row in rows))
 
     def test_figures_say_what_they_tell(self):
-        """Between the verdict and the table: what is stated, then what is found, each once in words."""
+        """Between the verdict and the table: stated, then measured errors, each explained once in words."""
         done = self.run_tool("crosscheck", "room.obj", "--patches", 300, "--paths", 512)
         figures = [line.strip() for line in done.stdout.splitlines() if line.startswith("  ")]
         for figure, tells in zip(figures, (r"bars \S+ % of the light: stated error of .*",
@@ -67,7 +67,7 @@ class VerifyTest(ToolTest):
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
 
     def test_two_rooms_agree_by_rows_of_rays(self):
-        """Without pairs: 1.5 % of the light may be noise, which has to be in the bars."""
+        """Without pairs: up to 1.5 % of the light is noise, which the bars must include."""
         done = self.run_tool("crosscheck", CORNELL_BOX.parent / "two_rooms.obj", "--sides", "front", "--method", "rays",
                              "--patches", 3000)
         self.assertEqual(done.returncode, GOOD, done.stdout + done.stderr)
@@ -91,7 +91,7 @@ class VerifyTest(ToolTest):
         self.assertLessEqual(json.loads((self.folder / "out.json").read_text())["relative_error"]["total"], 0.03)
 
     def test_lamps_close_to_a_surface_are_in_the_verdict(self):
-        """A lamp 1 mm above the floor, that looks at it: only the gap lights the room."""
+        """A lamp 1 mm above the floor that faces it: only the gap lights the room."""
         self.write("room.obj", ROOM.replace("usemtl lamp\n", "v 0.4 0.4 0.001\nv 0.6 0.4 0.001\nv 0.6 0.6 0.001\n"
                                             "v 0.4 0.6 0.001\nusemtl lamp\nf 20 19 18 17\n"))
         done = self.run_tool("crosscheck", "room.obj", "--patches", 60, "--paths", 256, "--margin", "1%")
@@ -100,7 +100,7 @@ class VerifyTest(ToolTest):
         self.assertRegex(verdict, r"(agrees|DISAGREES|INCONCLUSIVE): .*nearer to a surface than its patches are large")
 
     def test_wide_bars_are_inconclusive(self):
-        """Bars of 45 % grant a coarse mesh whatever it is off by."""
+        """Bars of 45 % accept any error of a coarse mesh."""
         done = self.run_tool("crosscheck", "room.obj", "--patches", 50, "--margin", "45%", "--paths", 256, "--json", "out.json")
         self.assertEqual(done.returncode, DIFFERS, done.stdout)
         self.assertRegex(done.stdout, r"INCONCLUSIVE: with a bar of 45 % .*error bars above 10 %")
@@ -109,7 +109,7 @@ class VerifyTest(ToolTest):
         self.assertGreater(facts["parts"][0]["width"], facts["widest_bar"])
 
     def test_too_few_patches_disagree(self):
-        """Without a bar the error of a coarse mesh is many times the noise."""
+        """Without a margin, the error of a coarse mesh is many times the noise."""
         done = self.run_tool("crosscheck", "room.obj", "--patches", 50, "--margin", "0%", "--paths", 16384)
         self.assertEqual(done.returncode, DIFFERS, done.stdout)
         self.assertIn("DISAGREES", done.stdout)

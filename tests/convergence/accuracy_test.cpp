@@ -29,7 +29,7 @@ Request by_rays(Request request) {
   return request;
 }
 
-// Uniform patches, many more and with more samples than what is tested, from other random numbers.
+// A uniform reference mesh with many more patches and samples, and other random numbers.
 FinerReference finer_reference(const Scene& scene, bool contact_lines = true) {
   Request request;
   request.mesh.contact_lines = contact_lines;
@@ -45,7 +45,7 @@ FinerReference finer_reference(const Scene& scene, bool contact_lines = true) {
 class AskedAccuracy : public testing::TestWithParam<const char*> {};
 
 // 3 % in a room without shadow edges, in one with a contact shadow and in one with many reflections. The reference's
-// own error, by docs/benchmarks/accuracy.md at most 0.7 % at 4,800 patches, is far below.
+// own error at 4,800 patches is at most 0.7 % (docs/benchmarks/accuracy.md), far below.
 TEST_P(AskedAccuracy, IsReached) {
   const Scene scene = varied_room(GetParam());
   const Simulation simulation = simulate(scene, asked(0.03));
@@ -55,7 +55,7 @@ TEST_P(AskedAccuracy, IsReached) {
   EXPECT_LE(error, simulation.accuracy.back().total);
 }
 
-// The same by rows of rays, of which more and more are taken.
+// The same by rows of rays, whose number grows.
 TEST_P(AskedAccuracy, IsReachedByRays) {
   const Scene scene = varied_room(GetParam());
   Request request = by_rays(asked(0.03));
@@ -79,7 +79,7 @@ TEST(AskedAccuracyOf, ALowerOneTakesFinerPatchesAndGivesLowerErrors) {
   EXPECT_LT(error_against(reference, fine).relative, error_against(reference, coarse).relative);
 }
 
-// Four times the rays halve what is theirs of the error; smoothing takes over what is not noise.
+// Four times the rays halve their part of the error. Smoothing removes noise only.
 TEST(AskedAccuracyOf, MoreRaysErrLess) {
   const Scene scene = varied_room("blocks");
   const auto of_rays = [&](int rays) {
@@ -93,8 +93,8 @@ TEST(AskedAccuracyOf, MoreRaysErrLess) {
   EXPECT_LE(of_rays(256), 0.6 * of_rays(64));
 }
 
-// All pairs of some 850 patches fit into the memory, and the accuracy takes more where patches do not end at the feet
-// of the blocks.
+// All pairs of about 850 patches fit into memory. The accuracy needs more patches, as patches do not end at the feet of
+// the blocks.
 TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   const Scene scene = varied_room("blocks");
   Request request = asked(0.02);
@@ -111,9 +111,9 @@ TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
   EXPECT_THROW(simulate(scene, request), MemoryError);
 }
 
-// Noise of light straight from lamps does not fall with the number of receiving patches: it takes more rays from the
-// lamps, and those only. Lamps are evenly bright but for what they reflect: for the mesh error alone they would not be
-// cut. When half of their patches are, in four, there are two and a half times as many.
+// Noise of direct light does not fall with the number of receiving patches: it needs more rays from the lamps. The
+// lamps are almost uniformly bright, so the mesh error alone would not cut them. If half of their patches are cut into
+// four, the lamps have two and a half times as many.
 TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
   const Scene scene = varied_room("colours");
   const auto lamps = [](const Simulation& s) { return (s.problem.exitance > 0).rowwise().any().count(); };
@@ -126,12 +126,12 @@ TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
   const Simulation fine = simulate(scene, noisy(0.005));
   EXPECT_GE(2 * lamps(fine), 5 * lamps(coarse));
   EXPECT_EQ(fine.plan.assembly.samples, coarse.plan.assembly.samples);
-  // By how much depends on the patches that it begins with: to 0.57 to 0.81 for longest edges of 0.4 to 0.6 m.
+  // The reduction depends on the first mesh: to 0.57 to 0.81 for longest edges of 0.4 to 0.6 m.
   EXPECT_LT(fine.accuracy.back().form_factor, coarse.accuracy.back().form_factor);
 }
 
-// A sheet above a floor, the sun above both. Patches on the shadow's edge, x = 1.7 m, know their mean by geometry, so
-// that none has to be cut for it: the floor's flux is 800 W/m^2 x 2.3 m x 4 m to rounding.
+// A sheet above a floor, with the sun above both. Geometry gives the exact mean of patches on the shadow's edge, x =
+// 1.7 m, so none has to be cut for it. The floor's flux is 800 W/m^2 x 2.3 m x 4 m to rounding.
 TEST(AskedAccuracyOf, NeedsNoSmallPatchesAlongTheEdgeOfTheSun) {
   Scene scene = empty_scene({grey(0.5), grey(0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
@@ -147,7 +147,7 @@ TEST(AskedAccuracyOf, NeedsNoSmallPatchesAlongTheEdgeOfTheSun) {
   EXPECT_NEAR(flux, 800 * 2.3 * 4, 1e-9 * 800 * 2.3 * 4);
 }
 
-// The floor does not depend on how far light gets into the gap above the lamp: fewer patches do than for all surfaces.
+// The floor does not depend on the light in the gap above the lamp, so it needs fewer patches than all surfaces.
 TEST(AskedAccuracyOf, TakesFewerPatchesForWhatIsOfInterest) {
   const Scene scene = varied_room("blocks");
   Request request = asked(0.015);

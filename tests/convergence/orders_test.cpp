@@ -22,7 +22,7 @@ struct Solved {
   Field radiosity;
 };
 
-// Three unit squares that face each other and touch nowhere, the upper one a lamp: the light on them is smooth.
+// Three unit squares that face each other without touching. The upper one is a lamp, so the light is smooth.
 Scene three_squares() {
   Scene scene = empty_scene({grey(0.5), grey(0.5, 10)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
@@ -39,7 +39,7 @@ Solved solved_on(const Scene& scene, PatchMesh mesh) {
   return {std::move(mesh), std::move(problem), std::move(radiosity)};
 }
 
-// Each mesh cuts every patch of the one before into four.
+// Each mesh cuts every patch of the previous one into four.
 std::vector<Solved> solved_on_nested_meshes(const Scene& scene, int meshes) {
   constexpr double half = 0.5 + 1e-9;
   PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), half);
@@ -61,7 +61,7 @@ double error_of_constants(const Solved& solved, const Solved& reference) {
                         reference.problem);
 }
 
-// A closed unit cube with a bright floor, its walls cut into so many parts each way.
+// A closed unit cube with a bright floor and this number of parts along each edge.
 Solved solved_cube(int parts, bool graded_edges) {
   Scene scene = cube_room(0.5, 0);
   scene.materials.push_back(grey(0.5, 1));
@@ -70,8 +70,8 @@ Solved solved_cube(int parts, bool graded_edges) {
   return solved_on(scene, tessellate(scene, kept_sides(scene, Sides::front), max_edge, {}, graded_edges));
 }
 
-// Of the means of patches, from meshes of 8 and of 16 parts, against one of 32: the points of each are points of the
-// next.
+// The order of convergence of patch means, from meshes of 8 and 16 parts against one of 32. The points of each mesh are
+// points of the next.
 double order_in_cube(bool graded_edges) {
   const Solved reference = solved_cube(32, graded_edges);
   return std::log2(error_of_means(solved_cube(8, graded_edges), reference) /
@@ -80,9 +80,9 @@ double order_in_cube(bool graded_edges) {
 
 }  // namespace
 
-// Without shadow edges the means of patches converge with order 2, as the midpoint rule does, and a field that is
-// constant on each patch with order 1. Both against a mesh 16 and 64 times finer, whose own error would raise them by
-// less than 0.1.
+// Without shadow edges, patch means converge with order 2, like the midpoint rule, and a field that is constant on each
+// patch with order 1. The references are 16 and 64 times finer; their own errors would raise the orders by less than
+// 0.1.
 TEST(Orders, PatchMeansConvergeFasterThanTheConstantField) {
   const std::vector<Solved> all = solved_on_nested_meshes(three_squares(), 5);
   const Solved& reference = all[4];
@@ -94,9 +94,9 @@ TEST(Orders, PatchMeansConvergeFasterThanTheConstantField) {
   EXPECT_LE(of_constants, 1.3);
 }
 
-// Where lit walls meet the light has no derivatives: even patches lose half an order and more, graded ones none
-// (docs/theory/edges-and-contacts.md): 1.26 of 2 at reflectance .5. The reference is twice as fine as the finer mesh,
-// which adds about the same to both.
+// At edges between lit walls the light has no derivatives. Uniform patches lose half an order or more: 1.26 instead of
+// 2 at reflectance 0.5; graded patches lose none (docs/theory/edges-and-contacts.md). The reference is twice as fine as
+// the finer mesh, which adds about the same to both.
 TEST(Orders, GradedEdgesRestoreTheOrderWhereLitWallsMeet) {
   const double graded = order_in_cube(true);
   EXPECT_GE(graded, 1.8);

@@ -1,6 +1,5 @@
-// What repair() leaves of any few polygons on a coarse grid passes the check of a scene and can be meshed, and the
-// exchange areas are those of a radiosity problem: finite, not negative, symmetric, and never more than the smaller
-// patch.
+// repair() turns any few polygons on a coarse grid into a scene that passes its check and can be meshed. The exchange
+// areas are those of a radiosity problem: finite, not negative, symmetric, and at most the smaller patch's area.
 #include "patchlight/scene/sides.h"
 #include "patchlight/transport/assemble.h"
 
@@ -22,7 +21,7 @@ namespace {
 constexpr std::size_t most_polygons = 8;
 constexpr std::size_t most_patches = 40;
 
-// Takes one byte after the other; zeros when they are used up.
+// Returns one byte after the other, and zeros after the last.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

@@ -1,5 +1,5 @@
 // Any bytes read as a model of the format PATCHLIGHT_FUZZ_FORMAT give a scene that passes its own check, or an
-// InputError of one line that names the file. For mtl they are the material file of an OBJ file of one face.
+// InputError of one line that names the file. For mtl, the bytes are the material file of an OBJ file with one face.
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view format = PATCHLIGHT_FUZZ_FORMAT;
 
-// Files in memory, so that the disk is left alone.
+// Files in memory, to avoid disk accesses.
 std::string file_named(std::string_view extension) {
   return "/dev/shm/patchlight_fuzz_" + std::to_string(::getpid()) + "." + std::string(extension);
 }

@@ -1,4 +1,4 @@
-// Takes the place of the isolated reader: a fuzzer sees the coverage of its own process alone.
+// Replaces the isolated reader: a fuzzer measures the coverage of its own process only.
 #include "patchlight/base/error.h"
 
 #include "files/isolated.h"

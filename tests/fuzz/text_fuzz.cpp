@@ -1,6 +1,6 @@
-// Any bytes as a file of the format PATCHLIGHT_FUZZ_FORMAT are read, or refused with an InputError of one line: a scene
-// file, a photometric file, a weather file, a spectrum, points, an array of numpy, a solution, and the two JSON files
-// of stored form factors.
+// Any bytes read as a file of the format PATCHLIGHT_FUZZ_FORMAT are accepted, or refused with an InputError of one
+// line. The formats are scene files, photometric files, weather files, spectra, points, NumPy arrays, solutions, and
+// the two JSON files of stored form factors.
 #include "patchlight/base/error.h"
 
 #include "archive/form_factor_files.h"
@@ -26,13 +26,13 @@ namespace {
 
 constexpr std::string_view format = PATCHLIGHT_FUZZ_FORMAT;
 
-// A folder in memory, so that the disk is left alone; a scene file may read nothing outside of it.
+// A folder in memory, to avoid disk accesses; a scene file may read nothing outside of it.
 const std::filesystem::path folder = "/dev/shm/patchlight_fuzz_" + std::to_string(::getpid());
 const std::filesystem::path fuzzed = folder / ("fuzzed." + std::string(format));
 
 void remove_folder() { std::filesystem::remove_all(folder); }
 
-// A file of stored form factors by its name.
+// A file of stored form factors with this name.
 template <typename Read>
 void read_as(const char* name, const std::string& text, const Read& read) {
   std::ofstream(folder / name, std::ios::binary) << text;

@@ -1,5 +1,5 @@
-// Sensors over patches that are coarse against what they reflect: the light on them is no step from patch to patch, and
-// bars say what is left.
+// Sensors near patches that are coarser than the distance to the sensor. The reflected light must vary smoothly between
+// patches, and the error bars must cover the remaining error.
 #include "patchlight/simulate.h"
 #include "patchlight/views/views.h"
 
@@ -25,7 +25,7 @@ constexpr double width = 10;
 constexpr double height_of_lamp = 2;
 constexpr double height_of_sensors = 0.8;
 
-// A floor that alone reflects, in a black room, a lamp without extent over its middle, and sensors that face down.
+// A reflecting floor in a black room, with a point lamp over its middle and sensors that face down.
 Scene lit_floor() {
   Scene scene = with_box(empty_scene({grey(0), grey(reflectance)}), Point(0, 0, 0), Point(width, width, 3), true);
   for (Polygon& polygon : scene.polygons) {
@@ -45,8 +45,8 @@ Scene lit_floor() {
   return scene;
 }
 
-// int rho I h_l / (pi d^3) h_s^2 / r^4 dA over the floor by the midpoint rule: 200 x 200 points, 5 cm apart, of a
-// function whose details are as large as the sensor is high. 400 x 400 points change it by less than 1e-4.
+// The midpoint rule for int rho I h_l / (pi d^3) h_s^2 / r^4 dA over the floor, with 200 x 200 points 5 cm apart. The
+// integrand varies over the height of the sensor. 400 x 400 points change the result by less than 1e-4.
 double exact(const Sensor& sensor) {
   constexpr int points = 200;
   constexpr double step = width / points;
@@ -67,7 +67,7 @@ double exact(const Sensor& sensor) {
 struct Found {
   double error = 0;   // root mean square
   double stated = 0;  // likewise
-  int beyond = 0;     // two bars
+  int beyond = 0;     // by more than two bars
   int sensors = 0;
 };
 
@@ -91,8 +91,9 @@ Found with_patches(const Scene& scene, double edge, bool error_bars) {
 }
 
 TEST(CoarsePatches, SensorsSayHowFarTheyAreOff) {
-  // Patches as wide as the lamp is high, half and a quarter of that. By what slopes add with their signs, a third of
-  // the sensors was beyond two bars, as these cancel by chance.
+  // The patches are as wide as the lamp is high, half of that, and a quarter. The error bars must not add the
+  // contributions of the slopes with their signs: these cancel by chance, and a third of the sensors would exceed two
+  // bars.
   const Scene scene = lit_floor();
   for (const bool error_bars : {false, true}) {
     for (const double edge : {2.0, 1.0, 0.5}) {
@@ -106,7 +107,8 @@ TEST(CoarsePatches, SensorsSayHowFarTheyAreOff) {
 }
 
 TEST(CoarsePatches, SensorsErrAsTheSquareOfTheirSize) {
-  // Planes leave an error of the second order, even patches one of the first, half.
+  // Linear interpolation leaves an error of second order. Constant patches leave one of first order, half at half the
+  // size.
   const Scene scene = lit_floor();
   const double coarse = with_patches(scene, 1.0, false).error;
   const double fine = with_patches(scene, 0.5, false).error;
@@ -114,8 +116,8 @@ TEST(CoarsePatches, SensorsErrAsTheSquareOfTheirSize) {
 }
 
 TEST(CoarsePatches, OfWhichThereAreOneOrFourSayThatTheyKnowNothing) {
-  // Of light in the middle of a floor one patch, and four that are alike, tell nothing: where they hide an error of
-  // more than half of the light, more than half is stated, and no more than all.
+  // One patch, or four equal ones, give no information about the light in the middle of a floor. The hidden error
+  // exceeds half of the light; the stated error must lie between half of the light and all of it.
   const Scene scene = lit_floor();
   double exactly = 0;
   for (const Sensor& sensor : scene.sensors[0].sensors) exactly += std::pow(exact(sensor), 2);
@@ -133,8 +135,8 @@ TEST(CoarsePatches, OfWhichThereAreOneOrFourSayThatTheyKnowNothing) {
 }
 
 TEST(CoarsePatches, BehindAColouredPaneSendNothingThatThisHolds) {
-  // A sensor in a black pipe whose end is a pane that lets through the first band alone: uneven as the floor is, none
-  // of its light in the second gets there.
+  // A sensor in a black pipe whose end is a pane that transmits the first band only. The floor is uneven, but none of
+  // its light in the second band reaches the sensor.
   Scene scene = lit_floor();
   for (Material& material : scene.materials) {
     material.reflectance = material.reflectance.replicate(1, 2).eval();

@@ -23,7 +23,7 @@ namespace {
 
 using namespace test;
 
-// A material of as many bands as `values` has.
+// A material with as many bands as `values`.
 Material even(const Spectrum& values, double reflectance, double exitance = 0) {
   Material material;
   material.reflectance = Spectrum::Constant(values.size(), reflectance);
@@ -47,8 +47,8 @@ Material glass(const Spectrum& transmittance) {
 
 Spectrum one(double value) { return Spectrum::Constant(1, value); }
 
-// A closed room of 4 x 3 x 2.5 m, divided at x = 2 by a pane from wall to wall, with a mirror at low x; all else sends
-// out light of its own, so much alike that no patch is bright.
+// A closed room of 4 x 3 x 2.5 m with a mirror at low x, divided at x = 2 by a pane from wall to wall. All other faces
+// emit almost the same light, so that no patch counts as bright.
 Scene divided_room(const Spectrum& reflected, const Spectrum& transmitted, double exitance_beyond) {
   Scene scene = empty_scene(
       {even(reflected, 0.6, 1), mirror(reflected), glass(transmitted), even(reflected, 0.5, exitance_beyond)});
@@ -76,7 +76,7 @@ Request by_few_rays(PatchIndex patches) {
 double largest_difference(const Field& a, const Field& b) { return (a - b).abs().maxCoeff(); }
 
 TEST(ColouredPassage, IsInEachBandThatOfAGreySceneOfThisValue) {
-  // Clear faces and mirrors alone have colours. The rays are the same ones, so nothing but rounding differs.
+  // Only clear faces and mirrors are colored. The rays are the same, so the results differ by rounding only.
   const Spectrum reflected = rgb(1, 0.5, 0.1);
   const Spectrum transmitted = rgb(0.85, 0.05, 0.4);
   const Simulation coloured = simulate(divided_room(reflected, transmitted, 0.6), by_few_rays(400));
@@ -98,8 +98,8 @@ TEST(ColouredPassage, OfGreyInThreeBandsIsGrey) {
     EXPECT_LT(largest_difference(three.solution.radiosity.col(band), single.solution.radiosity.col(0)), 1e-12);
 }
 
-// A black room with a lamp in it, and one beyond a red pane of index 1, in which all but the pane reflects and nothing
-// emits: what gets through is red.
+// A black room with a lamp, and a second one behind a red pane of index 1 with reflecting walls and no lamp. The
+// transmitted light is red.
 TEST(ColouredPassage, BehindARedPaneIsRed) {
   const Scene scene = divided_room(rgb(0, 0, 0), rgb(0.8, 0.08, 0), 0);
   const Simulation simulation = simulate(scene, by_few_rays(600));
@@ -111,7 +111,7 @@ TEST(ColouredPassage, BehindARedPaneIsRed) {
   EXPECT_LT(mean[2], 1e-12 * mean[0]);
 }
 
-// A way to ask for form factors of pairs, and the part of the request that its refusal names.
+// A request for form factors of pairs, and the option that its refusal names.
 struct PairRequest {
   const char* part;
   std::function<void(Request&)> ask;
@@ -140,7 +140,7 @@ Storage planned_storage(const Scene& scene, const std::function<void(Request&)>&
   return make_plan(scene, request).assembly.storage;
 }
 
-// Form factors of pairs have one value for all bands: they are right for grey panes alone.
+// Form factors of pairs have one value for all bands, which is correct for gray panes only.
 TEST(ColouredPassage, IsRefusedByPairs) {
   const Scene grey = divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6);
   const std::vector<Scene> coloured{divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.5, 0.8), 0.6),
@@ -182,7 +182,7 @@ TEST(ColouredPassage, IsNeverPlannedByPairs) {
   }
 }
 
-// The rows of one scene, and its patches, for another one.
+// Steps that reuse the rows and patches of a scene for another scene.
 Steps with_rows_of(const Scene& scene, const Request& request) {
   const RayFormFactors found = find_ray_form_factors(scene, request);
   Steps with;
@@ -191,14 +191,14 @@ Steps with_rows_of(const Scene& scene, const Request& request) {
   return with;
 }
 
-// The same patches, and rays of its own.
+// The same patches with newly traced rays.
 Simulation fresh_on_mesh_of(const Steps& with, const Scene& scene, const Request& request) {
   Steps own;
   own.mesh = with.mesh;
   return simulate(scene, request, {}, own);
 }
 
-// Three bands, in the colours of a scene in which nothing was seen yet.
+// Three bands in colors that did not occur when the rows were traced.
 TEST(ColouredPassage, HasTheSameRowsInAllColours) {
   const Request request = by_few_rays(400);
   const Steps with = with_rows_of(divided_room(rgb(0.7, 0.7, 0.7), rgb(0.8, 0.8, 0.8), 0.6), request);
@@ -209,7 +209,7 @@ TEST(ColouredPassage, HasTheSameRowsInAllColours) {
   EXPECT_EQ(largest_difference(again.ray_standard_error, fresh.ray_standard_error), 0);
 }
 
-// A lamp, which is apart from the rows, sends its light through the pane and over the mirror as well.
+// A lamp is handled separately from the rows; its light also passes through the pane and over the mirror.
 TEST(ColouredPassage, OfALampIsThatOfThePanesOfNow) {
   const auto with_lamp = [](Scene scene) {
     scene.materials.push_back(even(rgb(1, 1, 1), 0, 20));
@@ -242,8 +242,8 @@ TEST(ColouredPassage, IsRefusedWhereRaysHaveGoneAnotherWay) {
             1e-12);
 }
 
-// What all patches of a polygon's front send to those of another's by ways of a class, sum_i A_i F_ij, m^2, by either
-// half of the rays.
+// The exchange between the fronts of two polygons along the ways of one class, sum_i A_i F_ij in m^2, for each half of
+// the rays.
 using Exchanged = std::map<std::tuple<std::uint32_t, PolygonIndex, PolygonIndex>, std::array<double, 2>>;
 
 Exchanged exchanged_by_class(const RowsByClass& by_class, const PatchMesh& mesh, const Eigen::VectorXd& area) {
@@ -256,9 +256,9 @@ Exchanged exchanged_by_class(const RowsByClass& by_class, const PatchMesh& mesh,
   return sums;
 }
 
-// Light can go the same way back: A_i F_ij = A_j F_ji by the ways of each class alone. The halves are independent:
-// their difference has twice the standard error of their mean as its own, and of some hundred pairs the sum of squares
-// is that of the differences, but for chance.
+// Reciprocity holds for each class of ways: A_i F_ij = A_j F_ji. The halves of the rays are independent, so half of
+// their difference estimates the standard error of their mean. Over about a hundred pairs the sum of squared
+// differences matches the sum of variances, up to chance.
 TEST(ColouredPassage, IsSymmetricInEachClassOfWays) {
   const Scene scene = divided_room(one(0.7), one(0.8), 0.6);
   Request request = by_few_rays(800);

@@ -1,4 +1,5 @@
-// Patches that lie on both sides of a wall, alike in all quarters, carry light through it, and bars say so.
+// Patches that lie on both sides of a wall carry light through it. The error bars must include this leak, even if all
+// quarters of a patch agree.
 #include "patchlight/simulate.h"
 
 #include "support/scenes.h"
@@ -15,8 +16,8 @@ using namespace test;
 
 constexpr PolygonIndex of_room_and_pipe = 13;
 
-// A room with a lamp under its ceiling, a pipe through it, and two dark boxes without openings around that, each in the
-// middle of half of the pipe.
+// A room with a lamp under its ceiling, a pipe through it, and two dark closed boxes around the pipe. Each box stands
+// around the middle of one half of the pipe.
 Scene room_with_pipe() {
   Scene scene = with_box(empty_scene({grey(0.7), grey(0, 10)}), Point(0, 0, 0), Point(3, 2, 2), true);
   scene =
@@ -27,8 +28,8 @@ Scene room_with_pipe() {
   return scene;
 }
 
-// What is found in the boxes, where no light at all gets in, and what is stated there, relative to the brightest patch
-// of the room: mean squares.
+// The measured and the stated irradiance in the boxes, which no light can enter. Both are mean squares relative to the
+// brightest patch of the room.
 struct InBoxes {
   double found = 0;
   double stated = 0;
@@ -50,7 +51,7 @@ InBoxes in_boxes(std::uint64_t seed) {
   double area = 0;
   InBoxes squares;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    // Backs of boxes look inwards.
+    // The backs of the boxes face inward.
     if (mesh.polygon[i] < of_room_and_pipe || mesh.side[i] != Side::back) continue;
     area += mesh.area[i];
     squares.found += mesh.area[i] * std::pow(simulation.solution.irradiance(i, 0) / brightest, 2);
@@ -59,8 +60,8 @@ InBoxes in_boxes(std::uint64_t seed) {
   return {squares.found / area, squares.stated / area};
 }
 
-// What is found there is the error. The bars follow light as patches carry it, which leaves a part of what gets further
-// into the boxes as it is: so that they are within a factor of two is asked for, in the mean of four seeds.
+// All light in the boxes is error. The bars propagate light as the patches do, which covers only a part of the leak
+// deeper inside. On average over four seeds the bars must therefore be right within a factor of two.
 TEST(Crossing, IsInTheBarsOfWhatItLights) {
   InBoxes mean;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {

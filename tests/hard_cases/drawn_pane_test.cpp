@@ -1,4 +1,4 @@
-// Panes drawn on walls that are not cut: a clear face opens what it lies over.
+// Panes drawn on uncut walls: a clear face opens the wall that it covers.
 #include "patchlight/simulate.h"
 
 #include "scene/repair.h"
@@ -16,8 +16,8 @@ using namespace test;
 
 const Eigen::Affine3d turned_a_little(Eigen::AngleAxisd(0.7, Vector(0.3, 1, -2).normalized()));
 
-// A room of 4 x 3 x 2.5 m under an overcast sky, with panes of transmittance 1 in the wall at high x: from y to y and z
-// to z each.
+// A room of 4 x 3 x 2.5 m under an overcast sky, with panes of transmittance 1 in the wall at high x. Each pane has a
+// range in y and one in z.
 struct Pane {
   double from_y, to_y, from_z, to_z;
 };
@@ -44,7 +44,7 @@ Scene with_panes_drawn(const std::vector<Pane>& panes) {
   return scene;
 }
 
-// The same with the wall made of strips beside the panes, which stand side by side between the same two heights.
+// The same room with the wall made of strips around the panes, which stand side by side at one height.
 Scene with_wall_cut(const std::vector<Pane>& panes) {
   Scene scene = room_under_the_sky();
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -81,7 +81,8 @@ double floor_irradiance(Scene scene, Sides sides, const Eigen::Affine3d& placing
   return flux / area;
 }
 
-// The sky's noise of two independent means over some 80 patches is well below 1 %; the meshes of the walls differ.
+// The noise of the sky in two independent means over about 80 patches is well below 1 %. The meshes of the walls
+// differ.
 void expect_opened(const std::vector<Pane>& panes) {
   const double expected = floor_irradiance(with_wall_cut(panes), Sides::front, Eigen::Affine3d::Identity(), 1);
   ASSERT_GT(expected, 1);
@@ -100,7 +101,7 @@ TEST(DrawnPane, SeveralInOneWallOpenIt) {
 
 TEST(DrawnPane, OneThatReachesTheFloorOpensTheWall) { expect_opened({{1, 2, 0, 2}}); }
 
-// A hole with a seam and the pane in it make a closed surface again, with an opening.
+// The wall with a seamed hole, and the pane in it, form a closed surface with an opening.
 TEST(DrawnPane, LeavesTheRoomClosed) {
   const Scene scene = repair(with_panes_drawn({{0.3, 0.9, 0.8, 1.8}, {2, 2.8, 0.8, 1.8}}));
   EXPECT_EQ(scene.polygons.size(), 8U);
@@ -114,7 +115,7 @@ TEST(DrawnPane, LeavesTheRoomClosed) {
       << "light gets out: no outer side is left out for it";
 }
 
-// A pane with the corners of the wall, whichever comes first and whichever way it faces.
+// A pane with the corners of the wall, in either order and orientation.
 TEST(DrawnPane, OfTheWallsSizeTakesItsPlace) {
   const Pane whole{0, 3, 0, 2.5};
   for (const bool turned : {false, true}) {
@@ -130,8 +131,7 @@ TEST(DrawnPane, OfTheWallsSizeTakesItsPlace) {
   }
 }
 
-// The wall in two triangles, as a format of triangles has it, each of less area than the pane over both; and in two
-// quads, of which one has more.
+// The wall consists of two triangles, each smaller than the pane over both, or of two quads, one of which is larger.
 TEST(DrawnPane, OpensAWallInPiecesSmallerThanItself) {
   const auto in_pieces = [](const Pane& pane, const std::vector<std::vector<Point>>& pieces) {
     Scene scene = with_panes_drawn({pane});
@@ -160,7 +160,7 @@ TEST(DrawnPane, OpensAWallInPiecesSmallerThanItself) {
   }
 }
 
-// A bar that reaches beyond the pane stays, and so does a panel of much of its area that overhangs its edge.
+// A bar that reaches beyond the pane stays. So does a large panel that overhangs the edge of the pane.
 TEST(DrawnPane, DoesNotOpenBarsAndPanelsThatReachBeyondIt) {
   for (const Pane& upon : {Pane{0.4, 2.6, 1.2, 1.25}, Pane{0.4, 2.6, 1.2, 2.05}}) {
     const Scene with_pane = with_panes_drawn({{0.5, 2.5, 0.5, 2}});

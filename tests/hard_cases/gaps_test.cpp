@@ -1,5 +1,5 @@
-// Faces that stand closer to others than patches are wide: what leaks into the gap, or through it into what lies
-// behind, is right or within the bars, against paths.
+// Faces closer to each other than patches are wide. Light that leaks into the gap, or through it, must agree with path
+// tracing or lie within the error bars.
 #include "patchlight/simulate.h"
 
 #include "support/scenes.h"
@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-// A room with a lamp under its ceiling, of seven polygons; the rest is what stands in it.
+// A room with a lamp under its ceiling, seven polygons in all; further polygons belong to the objects in it.
 Scene room() {
   Scene scene = with_box(empty_scene({grey(0.6), grey(0, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   return with_quad(std::move(scene), {Point(1.5, 1, 2.4), Point(1.5, 2, 2.4), Point(2.5, 2, 2.4), Point(2.5, 1, 2.4)},
@@ -32,7 +32,7 @@ Scene room_with(const std::vector<Quad>& faces) {
   return scene;
 }
 
-// A box at some height over the floor, and one without a bottom: what gets under its rim is inside it.
+// A box at a given height above the floor, and one without a bottom. Light that passes under its rim gets inside.
 std::vector<Quad> box_above(double height) {
   const auto faces = box_faces(Point(1.1, 0.9, height), Point(2.3, 1.7, height + 1), false);
   return {faces.begin(), faces.end()};
@@ -47,13 +47,13 @@ std::vector<Quad> open_box_above(double height) {
   return faces;
 }
 
-// A board before a wall.
+// A board in front of a wall.
 std::vector<Quad> board_before_wall() {
   const auto faces = box_faces(Point(0.01, 0.8, 0.5), Point(0.04, 2.1, 1.9), false);
   return {faces.begin(), faces.end()};
 }
 
-// A drawer, open at its top, 1 cm below the top of a cupboard that is open to the room.
+// A drawer, open at its top, 1 cm below the top of a cupboard that is open toward the room.
 std::vector<Quad> drawer_in_cupboard() {
   std::vector<Quad> faces;
   const auto add = [&](const Point& low, const Point& high) {
@@ -66,7 +66,7 @@ std::vector<Quad> drawer_in_cupboard() {
   return faces;
 }
 
-// Into an open box few paths find their way: of too few their scatter tells nothing.
+// Few paths enter an open box, and the scatter of too few paths does not estimate their error.
 struct Gap {
   std::string name;
   std::vector<Quad> faces;
@@ -77,13 +77,13 @@ void PrintTo(const Gap& gap, std::ostream* out) { *out << gap.name; }
 
 class Gaps : public testing::TestWithParam<Gap> {};
 
-// Every patch of what stands in the room. Bars are standard errors: the mean of (difference / bar)^2 over the patches
-// is 1, or less where they are wide. Errors of patches go together, so that only other seeds tell how well that is
-// known.
+// A comparison over all patches of the objects in the room. The bars are standard errors: the mean of (difference /
+// bar)^2 is 1, or less for wide bars. Errors of patches are correlated, so only other seeds show the uncertainty of
+// this mean.
 struct Compared {
   double chi_square = 0;  // mean over patches and seeds
   double scatter = 0;     // standard error of that mean, from the seeds
-  double width = 0;       // of the bars, as a share of the light there
+  double width = 0;       // of the bars, as a fraction of the light there
 };
 
 std::vector<PatchIndex> patches_in_room(const Simulation& simulation) {
@@ -100,7 +100,7 @@ PathEstimate traced(const Scene& scene, const Simulation& simulation, std::uint3
   return trace_irradiance(scene, kept_sides(scene, Sides::both), receivers, {.paths = paths});
 }
 
-// Of one seed, with no scatter.
+// For one seed, without scatter.
 Compared with_paths(const PathEstimate& paths, const Simulation& simulation) {
   const std::vector<PatchIndex> patches = patches_in_room(simulation);
   const Field bar = simulation.error_bars->total();
@@ -125,7 +125,7 @@ Compared solved_and_traced(const Gap& gap, double size, std::size_t patches, Sto
   request.mesh.sides = Sides::both;
   request.assembly.storage = storage;
   if (storage == Storage::rays) request.solver.solver = Solver::gmres;
-  request.accuracy.error_bars = storage == Storage::tiles;  // rows of rays state theirs unasked
+  request.accuracy.error_bars = storage == Storage::tiles;  // rows of rays always have error bars
   Compared mean;
   double squares = 0;
   PathEstimate paths;
@@ -150,7 +150,7 @@ TEST_P(Gaps, LeakNoMoreThanBarsSay) {
   }
 }
 
-// Noise of the rays is most of these bars: they are as wide as what they state, not wider.
+// Noise of the rays dominates these bars, so their width must match the error.
 TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
   for (const double size : {1.0, 1e-3}) {
     const Compared by = solved_and_traced(GetParam(), size, 2000, Storage::rays);
@@ -159,7 +159,8 @@ TEST_P(Gaps, LeakNoMoreThanBarsOfRaysSay) {
   }
 }
 
-// A furnace: everything shines and reflects alike, so the light is exact however flat the space is, and bars say so.
+// A furnace: all faces emit and reflect alike. The light is exact however flat the space is, and the bars must be
+// narrow.
 TEST(FlatSpaces, FurnacesHaveNarrowBars) {
   for (const double size : {1.0, 1e-3}) {
     for (const Storage storage : {Storage::tiles, Storage::rays}) {

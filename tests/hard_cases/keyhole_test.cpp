@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 #include <utility>
 
-// A dim room that gets its light from a bright one through a keyhole: an accuracy of the dim one.
+// The accuracy of a dim room that gets its light from a bright room through a keyhole.
 namespace patchlight::keyhole_test {
 namespace {
 
 using namespace test;
 
-// Two cubes of 2 m beside each other, the wall between them at x = 2 with a hole of 20 cm; the lamp is in the first.
+// Two adjacent cubes of 2 m with a hole of 20 cm in the wall at x = 2 between them. The lamp is in the first.
 Scene two_rooms_with_a_keyhole(double unit) {
   Scene scene = empty_scene({named("bright", 0.7), named("dim", 0.7), grey(0, 10)});
   const std::vector<Quad> first = box_faces(Point(0, 0, 0), Point(2, 2, 2), true);
@@ -43,7 +43,7 @@ Request asked_of_the_dim_room(double accuracy) {
 }
 
 TEST(Keyhole, SolverLeavesItsPartOfTheDimRoomsLightAndNoMore) {
-  // The bound on all light is a share of that of the bright room, a thousand times as much.
+  // The bound on all light is relative to the light of the bright room, a thousand times as much.
   constexpr double accuracy = 0.2;
   for (const double unit : {1.0, 1e-3}) {
     const Simulation simulation = simulate(two_rooms_with_a_keyhole(unit), asked_of_the_dim_room(accuracy));
@@ -60,7 +60,7 @@ TEST(Keyhole, ToleranceThatIsAskedForIsTaken) {
     request.solver.relative_error = tolerance;
     const Simulation simulation = simulate(two_rooms_with_a_keyhole(1), request);
     EXPECT_EQ(tolerance_of(simulation.plan.solver), tolerance);
-    // Where it leaves more than the accuracy no mesh mends it: none is tried.
+    // If the solver's tolerance alone exceeds the accuracy, no mesh can reach it, and none is tried.
     if (tolerance > 1e-3) {
       EXPECT_EQ(simulation.accuracy.size(), 1U);
       EXPECT_GT(simulation.accuracy.back().solver, 0.2);

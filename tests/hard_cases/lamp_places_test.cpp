@@ -1,4 +1,4 @@
-// Lamps in the plane of a surface, and lamps that cross closed solids: no light is lost by deciding where they are.
+// Lamps in the plane of a surface, and lamps that cross closed solids: finding their place must not lose light.
 #include "patchlight/scene/luminaire.h"
 #include "patchlight/simulate.h"
 
@@ -18,7 +18,7 @@ using namespace test;
 
 const Eigen::Affine3d turned_a_little(Eigen::AngleAxisd(0.7, Vector(0.3, 1, -2).normalized()));
 
-// Flux in W that first arrives at the patches.
+// Direct flux on the patches, W.
 double direct_flux(const Simulation& simulation) {
   return (simulation.problem.direct_irradiance.col(0) * simulation.problem.area.array()).sum();
 }
@@ -29,7 +29,7 @@ Request in_patches(std::size_t patches) {
   return request;
 }
 
-// A room with an isotropic luminaire of 1 W/sr in the middle of its ceiling, at this height.
+// A room with an isotropic luminaire of 1 W/sr below or in the middle of its ceiling, at the given heights.
 Scene room_with_light(double ceiling, double light, const Eigen::Affine3d& placing) {
   Scene scene = moved(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, ceiling), true), placing);
   scene.luminaires.resize(1);
@@ -38,14 +38,14 @@ Scene room_with_light(double ceiling, double light, const Eigen::Affine3d& placi
   return scene;
 }
 
-// The half of its flux that is sent downward arrives, 2 pi W: by the solid angles of the patches, to rounding. Nothing
-// else is lit: the outer side of the ceiling lies in its plane.
+// The downward half of the flux arrives, 2 pi W, up to rounding, since solid angles are exact. Nothing else is lit: the
+// luminaire lies in the plane of the ceiling's outer side.
 void expect_half_of_the_flux(const Scene& scene, const char* what) {
   const Simulation simulation = simulate(scene, in_patches(60));
   EXPECT_NEAR(direct_flux(simulation), 2 * std::numbers::pi, 1e-5) << what;
 }
 
-// Heights of a grid of 50 mm: in one unit and the other they differ by one rounding.
+// Heights on a grid of 50 mm, which differ by one rounding between the units.
 TEST(LuminaireInTheCeiling, LightsTheRoomWhateverRoundingSays) {
   for (int k = 40; k < 70; ++k) {
     const double ceiling = k / 20.0;
@@ -61,7 +61,7 @@ TEST(LuminaireInTheCeiling, LightsTheRoomWhateverRoundingSays) {
   }
 }
 
-// Nothing stands before the outer sides, and no light: they have no patches.
+// The outer sides face empty, dark space and have no patches.
 TEST(LuminaireInTheCeiling, LeavesTheDarkOutsideDark) {
   const Scene scene = room_with_light(2.8, 2800 * 0.001, Eigen::Affine3d::Identity());
   const KeptSides kept = kept_sides(scene, Sides::automatic);
@@ -71,7 +71,7 @@ TEST(LuminaireInTheCeiling, LeavesTheDarkOutsideDark) {
   }
 }
 
-// Nine closed rooms in a square, 0.2 m apart, on a grid of 3 m.
+// Nine closed rooms in a square on a grid of 3 m, 0.2 m apart.
 Scene nine_rooms() {
   Scene scene = empty_scene({grey(0.5), grey(0, 10)});
   for (int x = 0; x < 3; ++x) {
@@ -83,7 +83,7 @@ Scene nine_rooms() {
   return scene;
 }
 
-// Mean irradiance of a room's floor, W/m^2; the rooms' polygons come six by six, the floor first.
+// Mean irradiance of a room's floor, W/m^2. Each room has six polygons, the floor first.
 double floor_irradiance(const Simulation& simulation, PolygonIndex room) {
   double flux = 0;
   double area = 0;
@@ -95,8 +95,8 @@ double floor_irradiance(const Simulation& simulation, PolygonIndex room) {
   return area > 0 ? flux / area : 0;
 }
 
-// One luminous ceiling through the walls of all nine: each is lit as a room with a piece of it is, but for the patches
-// of the lamp, which the walls cross.
+// One luminous ceiling crosses the walls of all nine rooms. Each room is lit as by its own piece of the ceiling, except
+// for the lamp's patches that walls cross.
 TEST(LampAcrossSolids, ALuminousCeilingLightsEveryRoom) {
   const Quad whole{Point(0.2, 0.2, 2.3), Point(0.2, 8.6, 2.3), Point(8.6, 8.6, 2.3), Point(8.6, 0.2, 2.3)};
   const Quad piece{Point(3, 3, 2.3), Point(3, 5.8, 2.3), Point(5.8, 5.8, 2.3), Point(5.8, 3, 2.3)};
@@ -117,7 +117,7 @@ TEST(LampAcrossSolids, ALuminousCeilingLightsEveryRoom) {
   }
 }
 
-// A tube of eight sides along x, from one point to another, fronts outward.
+// A tube along x with eight sides, fronts outward, from one point to another.
 Scene with_tube(Scene scene, const Point& from, const Point& to, double radius) {
   const auto on_ring = [&](const Point& centre, int k) {
     const double angle = std::numbers::pi * k / 4;
@@ -146,7 +146,7 @@ TEST(LampAcrossSolids, ATubeLightsTheRoomInTheMiddle) {
   }
 }
 
-// A globe over the ceiling, of which the lowest 3 mm hang in the room.
+// A globe above the ceiling, whose lowest 3 mm reach into the room.
 TEST(LampAcrossSolids, ABallLightsWhatItReachesInto) {
   Scene scene = moved(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2.5), true), turned_a_little);
   scene.luminaires.resize(1);

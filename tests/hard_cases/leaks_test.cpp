@@ -1,5 +1,5 @@
-// Walls that must be tight: without thickness, standing on a floor, pieced together with T-junctions. And surfaces that
-// must not shade themselves.
+// Walls must be tight if they have no thickness, stand on a floor or consist of pieces with T-junctions. Surfaces must
+// not shade themselves.
 #include "patchlight/simulate.h"
 
 #include "base/sampling.h"
@@ -38,7 +38,8 @@ Quad wall_piece(double y0, double y1, double z0, double z1) {
   return {Point(1, y0, z0), Point(1, y1, z0), Point(1, y1, z1), Point(1, y0, z1)};
 }
 
-// A closed room of 2 x 1 x 1 m; from polygon 6 on these pieces, a wall of no thickness at x = 1, then a tilted lamp.
+// A closed room of 2 x 1 x 1 m. The polygons from number 6 on are the pieces of a wall without thickness at x = 1, then
+// a tilted lamp.
 Scene divided_room(const std::vector<Quad>& pieces) {
   Scene scene = with_box(empty_scene({grey(0.8), grey(0, 10)}), Point(0, 0, 0), Point(2, 1, 1), true);
   for (const Quad& piece : pieces) scene = with_quad(std::move(scene), piece);
@@ -50,7 +51,7 @@ struct Flux {
   double dark = 0;  // W
 };
 
-// What arrives on the two sides of the wall in a moved room. Patches with edges of just over 1/4 m end at the wall.
+// The flux on both sides of the wall in a moved room. The patch edges are just over 1/4 m, and patches end at the wall.
 Flux flux_beside_the_wall(const Simulation& simulation, const Eigen::Affine3d& motion) {
   Flux flux;
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
@@ -70,8 +71,8 @@ Request both_sides() {
   return request;
 }
 
-// The room of the property tests lies along the axes, where no coordinate is rounded. Turned, nothing is seen through
-// the wall either.
+// The room of the property tests is aligned with the axes, where no coordinate is rounded. Here the room is turned, and
+// the wall must still be tight.
 TEST(WallWithoutThickness, IsTightHoweverTheRoomIsTurned) {
   const Scene room = divided_room({wall_piece(0, 1, 0, 1)});
   for (const Eigen::Affine3d& motion : turns(10, 1)) {
@@ -81,9 +82,9 @@ TEST(WallWithoutThickness, IsTightHoweverTheRoomIsTurned) {
   }
 }
 
-// Five pieces whose corners lie on each other's edges: turned, and above all in single precision, not exactly. What
-// coordinates of x m are rounded by, up to 2^-24 x each, opens cracks of up to twice that along 6.6 m of seams; the lit
-// surface has 10 m^2. The few rays that meet them know that to a factor of two.
+// Five pieces whose corners lie on each other's edges, exactly only if the room is not turned. Single precision rounds
+// a coordinate x by up to 2^-24 x and opens cracks of up to twice that along 6.6 m of seams. The lit surface has 10
+// m^2. Few rays hit the cracks, so the estimate is good to a factor of two.
 TEST(TJunctions, LeakNoMoreThanATenThousandth) {
   const Scene room = divided_room({wall_piece(0, .37, 0, 1), wall_piece(.37, 1, 0, .21), wall_piece(.37, 1, .21, .613),
                                    wall_piece(.37, .71, .613, 1), wall_piece(.71, 1, .613, 1)});
@@ -107,8 +108,8 @@ TEST(TJunctions, LeakNoMoreThanATenThousandth) {
   }
 }
 
-// A million rays from the floor on one side of a wall to any point of the other side of the room. Single precision
-// tells no position nearer than 1e-7 of the extent: a ray that near to the foot may pass, which is a share of 1e-7.
+// A million rays from the floor on one side of a wall to points on the other side. Single precision resolves 1e-7 of
+// the extent: a ray that starts this close to the foot of the wall may pass, a fraction of 1e-7.
 TEST(WallOnAFloor, StopsAMillionRays) {
   const Scene room = with_quad(with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(2, 2, 2), true),
                                {Point(1, 0, 0), Point(1, 2, 0), Point(1, 2, 2), Point(1, 0, 2)});
@@ -129,7 +130,7 @@ TEST(WallOnAFloor, StopsAMillionRays) {
   }
 }
 
-// A ball of flat faces, fronts inward: meridians and parallels cut it into quadrilaterals and triangles.
+// A ball of flat faces, fronts inward. Meridians and parallels divide it into quadrilaterals and triangles.
 Scene ball(int parallels) {
   const auto at = [&](int i, int j) {
     const double theta = std::numbers::pi * i / parallels;
@@ -156,8 +157,8 @@ Point point_of(const Scene& scene, PolygonIndex polygon, double u, double v) {
   return square_to_quad({corners[0], corners[1], corners[2], corners.back()}, u, v);
 }
 
-// Shadow rays between the inner sides of a scene's first `count` polygons, both ends pulled in by a share of the
-// length.
+// Shadow rays between the inner sides of the first `count` polygons. Both ends are moved inward by a fraction `pull` of
+// the length.
 std::vector<Segment> rays_between(const Scene& scene, PolygonIndex count, double pull) {
   std::vector<Segment> segments;
   std::uint32_t k = 0;
@@ -174,8 +175,8 @@ std::vector<Segment> rays_between(const Scene& scene, PolygonIndex count, double
 
 constexpr double pulls[] = {0, 1e-6, 1e-5, 1e-4, 1e-3};
 
-// Neighbours in a ball meet at 9 degrees: any offset that mends one pair's shadow acne harms another. Without offset
-// and with any, no ray inside is blocked, even by an occluder that has all the faces.
+// Neighboring faces meet at 9 degrees: an offset that fixes shadow acne for one pair would break another. With and
+// without an offset, no ray inside is blocked, even if the occluder has all faces.
 TEST(SelfShadowing, ThereIsNoneInsideABall) {
   for (const Eigen::Affine3d& motion : turns(3, 100)) {
     const Scene scene = moved(ball(20), motion);
@@ -188,8 +189,8 @@ TEST(SelfShadowing, ThereIsNoneInsideABall) {
   }
 }
 
-// A box floats half a metre from all walls: of rays between these it stops the same ones, wherever in the first and
-// last thousandth they begin and end; at most one in 32,768 grazes an edge so that rounding decides.
+// A box floats half a meter from all walls. It blocks the same rays between walls for all start and end points within
+// the first and last thousandth. At most one in 32,768 rays grazes an edge, where rounding decides.
 TEST(SelfShadowing, OcclusionIsFlatInTheOffset) {
   for (const Eigen::Affine3d& motion : turns(3, 100)) {
     const Scene scene = moved(furnished_room(0.5), motion);

@@ -33,7 +33,7 @@ Request fronts(PatchIndex patches) {
   return request;
 }
 
-// A closed room of 4 x 3 x 2.5 m. Of its walls, that at low x is of material 1, and that at high x of material 2.
+// A closed room of 4 x 3 x 2.5 m. Material 1 covers the wall at low x, material 2 the wall at high x.
 Scene room(std::vector<Material> materials) {
   Scene scene = empty_scene(std::move(materials));
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -45,7 +45,7 @@ Scene room(std::vector<Material> materials) {
   return scene;
 }
 
-// Looking down from below the ceiling, 1 m x 0.5 m.
+// A lamp of 1 m x 0.5 m below the ceiling, facing down.
 Scene with_lamp(Scene scene, double x, MaterialIndex material) {
   return with_quad(std::move(scene),
                    {Point(x, 1, 2.4), Point(x, 1.5, 2.4), Point(x + 1, 1.5, 2.4), Point(x + 1, 1, 2.4)}, material);
@@ -59,8 +59,8 @@ std::vector<Point> mirrored_at_low_x(std::vector<Point> points) {
 double on_floor(const Simulation& simulation, PatchIndex i) { return simulation.solution.irradiance(i, 0); }
 
 TEST(PlanarMirror, ShowsTheLampOnceMore) {
-  // Black walls: H = E (F(x, lamp) + R F(x, image of the lamp)), both by Lambert's formula. All of the wall is the
-  // mirror, so that no place of the floor sees less than all of the image.
+  // Black walls: H = E (F(x, lamp) + R F(x, image of the lamp)), both by Lambert's formula. The mirror covers the whole
+  // wall, so every point of the floor sees the whole image.
   const double R = 0.9;
   Scene scene = with_lamp(room({grey(0), mirror(R), grey(0), grey(0, 10)}), 1.5, 3);
   const std::vector<Point> lamp = corner_points(scene, 6);
@@ -78,7 +78,7 @@ TEST(PlanarMirror, ShowsTheLampOnceMore) {
   for (std::size_t k = 0; k < group.sensors.size(); ++k)
     EXPECT_NEAR(readings.irradiance(static_cast<Eigen::Index>(k), 0) / expected_at(group.sensors[k].point), 1, 0.003);
 
-  // Patches: means, against those over 8 x 8 places, of errors below the mesh's.
+  // Patch means, against means over 8 x 8 points; the error of these is below that of the mesh.
   const PatchRange floor = simulation.mesh.patches_on(0, Side::front);
   double flux = 0, expected = 0;
   for (PatchIndex i = floor.begin; i < floor.end; ++i) {
@@ -92,12 +92,12 @@ TEST(PlanarMirror, ShowsTheLampOnceMore) {
   EXPECT_NEAR(flux / expected, 1, 0.003);
 }
 
-// Reflectances of the mirrors at both ends.
+// Reflectances of the two mirrors at the ends.
 class MirrorFurnace : public testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(MirrorFurnace, IsOne) {
-  // Walls emit 1 - rho, mirrors 1 - R: all light has the radiance 1 / pi, also between mirrors that face each other.
-  // What a mirror keeps is 1e-6 at least, and of 64 meetings on the way of a ray R^64 is left.
+  // Walls emit 1 - rho and mirrors 1 - R: all light has the radiance 1 / pi, also between facing mirrors. Mirrors
+  // absorb at least 1e-6, and a ray keeps R^64 of its light after 64 reflections.
   const auto [R, other] = GetParam();
   const Scene scene = room({grey(0.6, 0.4), mirror(R, 1 - R), mirror(other, 1 - other)});
   const Simulation simulation = simulate(scene, fronts(600));
@@ -105,7 +105,7 @@ TEST_P(MirrorFurnace, IsOne) {
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
     const PolygonIndex p = simulation.mesh.polygon[i];
     const double held = p == 5 ? 1 - R : p == 3 ? 1 - other : 1;
-    if (held < 0.01) continue;  // held at least 1e-6: no number of its own
+    if (held < 0.01) continue;  // the minimum 1e-6 is too small to resolve
     EXPECT_NEAR(simulation.solution.radiosity(i, 0), held, 1e-3 * held) << p;
   }
   EXPECT_LT(simulation.balance.imbalance, 1e-3);
@@ -123,7 +123,7 @@ TEST(PlanarMirror, OfNoReflectanceIsABlackWall) {
   EXPECT_TRUE((one.solution.radiosity == other.solution.radiosity).all());
 }
 
-// A mirror of 2 x 1.2 m just before the wall at low x, a box before it, and a lamp.
+// A mirror of 2 x 1.2 m in front of the wall at low x, a box in front of the mirror, and a lamp.
 Scene furnished_with_mirror(double R) {
   Scene scene = with_lamp(room({grey(0.6), grey(0.5), grey(0.3), grey(0, 10), mirror(R)}), 1.5, 3);
   scene = with_quad(std::move(scene),
@@ -131,7 +131,7 @@ Scene furnished_with_mirror(double R) {
   return with_box(std::move(scene), Point(0.5, 1, 0), Point(1, 1.6, 1.2), false);
 }
 
-// The means over whole faces, by paths that know neither patches nor images.
+// Means over whole faces, against path tracing without patches or images.
 TEST(PlanarMirror, LightsARoomAsPathsDo) {
   const Scene scene = furnished_with_mirror(0.9);
   const Simulation simulation = simulate(scene, fronts(3000));
@@ -154,7 +154,7 @@ TEST(PlanarMirror, LightsARoomAsPathsDo) {
 TEST(PlanarMirror, LosesNothing) {
   const Simulation simulation = simulate(furnished_with_mirror(0.9), fronts(1500));
   EXPECT_LT(simulation.balance.imbalance, 1e-3);
-  // Of 2.4 m^2 of mirror and 77 m^2 in all, the light that would be absorbed comes back: some hundredths.
+  // The mirror has 2.4 m^2 of 77 m^2; it returns the light that would be absorbed, a few percent.
   const Simulation dark = simulate(furnished_with_mirror(0), fronts(1500));
   const auto flux = [](const Simulation& of) { return of.problem.area.dot(of.solution.irradiance.col(0).matrix()); };
   EXPECT_GT(flux(simulation) / flux(dark), 1.02);
@@ -169,8 +169,8 @@ TEST(PlanarMirror, GivesTheSameBitsOnOneThreadAndOnTwo) {
   EXPECT_TRUE((one.solution.radiosity == two.solution.radiosity).all());
 }
 
-// A mirror on the sill throws the sun onto the ceiling: all of R E A sin(altitude) arrives there, on the patches where
-// geometry puts it. By 64 samples of each patch, 1 % of the flux.
+// A mirror on the sill reflects the sun onto the ceiling. The flux R E A sin(altitude) arrives on the patches that
+// geometry predicts. 64 samples per patch give 1 % of the flux.
 TEST(PlanarMirror, ThrowsTheSunOntoTheCeiling) {
   Scene scene = empty_scene({grey(0), mirror(0.8)});
   scene = with_quad(std::move(scene), {Point(0, 0, 3), Point(0, 4, 3), Point(6, 4, 3), Point(6, 0, 3)});
@@ -194,9 +194,9 @@ TEST(PlanarMirror, ThrowsTheSunOntoTheCeiling) {
   EXPECT_NEAR(flux / (0.8 * 800 * std::sin(altitude) * 0.8), 1, 0.01);
 }
 
-// The cusp of a half cylinder's caustic: parallel light along the axis of a concave mirror of radius r meets it at half
-// of r. 64 strips, each of which throws what it gets onto the floor, flux E R sum A cos, less what meets the mirror
-// twice: only strips within 45 degrees of the axis are mirrors, whose light does not.
+// The cusp of the caustic of a half cylinder: a concave mirror of radius r focuses parallel light at r / 2. Each of 64
+// strips reflects its light onto the floor: flux E R sum A cos. Light that meets a second mirror is excluded: only
+// strips within 45 degrees of the axis are mirrors.
 TEST(ConcaveMirror, ThrowsACausticWhoseCuspIsAtHalfItsRadius) {
   const double r = 1, height = 0.1, R = 0.9, slope = 0.1;
   Scene scene = empty_scene({grey(0), mirror(R)});
@@ -228,12 +228,12 @@ TEST(ConcaveMirror, ThrowsACausticWhoseCuspIsAtHalfItsRadius) {
     if (thrown > brightest) brightest = thrown, cusp = with.mesh.centroid[i];
   }
   EXPECT_NEAR(flux / expected, 1, 0.01);
-  // Light falls by the slope on its way: from the upper half of the mirror some gets as far as the focus.
+  // Light descends on its way, so some of it from the upper half of the mirror gets as far as the focus.
   EXPECT_NEAR(cusp.x(), -r / 2, 0.06);
   EXPECT_NEAR(cusp.y(), 0, 0.06);
 }
 
-// Sensors at points, each looking along a normal.
+// Sensors at points, each with a direction.
 Scene with_sensors(Scene scene, std::vector<Sensor> sensors) {
   SensorGroup group;
   group.name = "sensors";
@@ -242,8 +242,8 @@ Scene with_sensors(Scene scene, std::vector<Sensor> sensors) {
   return scene;
 }
 
-// Two mirrors at a right angle show three images of a lamp without extent, one of them over both mirrors, in either
-// order: each half of the floor sees it over one of the two. I cos / d^2 of all four, to rounding.
+// Two perpendicular mirrors show three images of a point lamp, one of them by both mirrors in either order. Each half
+// of the floor sees that image by one of the two orders. The four terms I cos / d^2 match up to rounding.
 TEST(PlanarMirrors, ShowThreeImagesInACorner) {
   const double R = 0.9;
   Scene scene = empty_scene({grey(0), mirror(R)});
@@ -271,8 +271,8 @@ TEST(PlanarMirrors, ShowThreeImagesInACorner) {
   }
 }
 
-// A mirror of 200 x 200 m below a sensor that looks down on it from 1 m, under an even sky of radiance L: pi L R, less
-// the hundredth of a hundredth that it does not fill. Of the sky's samples the standard error is known.
+// A sensor 1 m above a mirror of 200 x 200 m looks down under a uniform sky of radiance L: pi L R, less 1e-4 outside of
+// the mirror. The sky is sampled, with a known standard error.
 TEST(PlanarMirror, ShowsTheSky) {
   Scene scene = empty_scene({grey(0), mirror(0.8)});
   scene = with_quad(std::move(scene),
@@ -289,7 +289,7 @@ TEST(PlanarMirror, ShowsTheSky) {
   EXPECT_LT(readings.standard_error(0, 0), 0.01 * expected);
 }
 
-// A wall with the radiosity 5 is behind a sensor that looks at a mirror: 5 R F(x, image of the wall).
+// A sensor faces a mirror with a wall of radiosity 5 behind it: 5 R F(x, image of the wall).
 TEST(PlanarMirror, ShowsAWallBehindTheSensor) {
   const double R = 0.7;
   Scene scene = empty_scene({grey(0, 5), mirror(R)});
@@ -306,7 +306,7 @@ TEST(PlanarMirror, ShowsAWallBehindTheSensor) {
   EXPECT_LT(readings.standard_error(0, 0), 0.02 * expected);
 }
 
-// What a pane reflects at 0 to 80 degrees of a lamp without extent on the same side: I cos / d^2 R(theta).
+// The light of a point lamp that a pane reflects at 0 to 80 degrees: I cos / d^2 R(theta).
 TEST(Pane, ReflectsByItsAngle) {
   Material glass = grey(0);
   glass.transmittance = Spectrum::Constant(1, 0.8);

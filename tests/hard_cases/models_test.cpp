@@ -1,4 +1,4 @@
-// Models as they come: tiny, huge and far away; with faces that are no faces, and with faces turned around.
+// Models that are tiny, huge or far from the origin, with degenerate faces or with reversed faces.
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
 
@@ -25,16 +25,16 @@ Request coarse(double scale = 1) {
   return request;
 }
 
-// A room turned; of 4e-6 m and of 4000 km; 1e6 m from the origin.
+// A turned room; sizes of 4e-6 m and 4000 km; 1e6 m from the origin.
 struct Placing {
   double scale;
-  double shift;  // metres
+  double shift;  // meters
 };
 
 class Placings : public testing::TestWithParam<Placing> {};
 
-// F_ij does not depend on where, how large and how turned. Random points lie in frames of the scene's own, so each pair
-// gets the same rays, and the largest of all differences is that of rounding: 6e-8 F in single precision.
+// F_ij does not depend on position, size and orientation. Random points are defined in the scene's own frames, so each
+// pair gets the same rays. The largest difference is rounding, 6e-8 F in single precision.
 TEST_P(Placings, FormFactorsAreTheSame) {
   const Placing placing = GetParam();
   Eigen::Affine3d motion(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(SizesAndPlaces, Placings,
                                          Placing{1e-6, 1}),
                          [](const auto& parameter) { return "placing_" + std::to_string(parameter.index); });
 
-// Faces without area of every kind, a repeated corner in every sound face: dropped and counted, and the answer is the
-// same to the bit but for the order of operations.
+// Degenerate faces of every kind, and a repeated corner in each valid face, are dropped and counted. The result has the
+// same bits except for the order of operations.
 TEST(FacesWithoutArea, ChangeNothing) {
   const Scene sound = furnished_room(0.6);
   Scene scene = sound;
@@ -94,8 +94,8 @@ TEST(FacesWithoutArea, ChangeNothing) {
   EXPECT_LE((radiosity - expected).abs().maxCoeff(), 1e-12 * expected.maxCoeff());
 }
 
-// In a closed room with a box, any wall or box face turned around is found by its neighbours and reported; the light is
-// that of the sound room, except for the rounding of what a turned face's corners come in another order do.
+// In a closed room with a box, any reversed face of a wall or the box is detected by its neighbors and reported. The
+// light matches the correct room, up to rounding by the other order of corners.
 TEST(TurnedFaces, OfClosedShellsChangeNothing) {
   const Scene sound = furnished_room(0.6);
   const Simulation expected = simulate(repair(sound), coarse());
@@ -113,7 +113,7 @@ TEST(TurnedFaces, OfClosedShellsChangeNothing) {
   }
 }
 
-// Three walls on one edge, a Moebius band, and a face turned in an open shell: solved with both sides.
+// Three walls at one edge, a Moebius band, and a reversed face in an open shell are solved with both sides.
 TEST(TurnedFaces, OfOpenShellsTakePartWithBothSides) {
   Scene fins = with_quad(empty_scene({grey(0.5), grey(0.2, 3)}),
                          {Point(-2, -2, 3), Point(-2, 2, 3), Point(2, 2, 3), Point(2, -2, 3)}, 1);

@@ -1,4 +1,4 @@
-// Polygons that lie one on the other in the same plane: a rug drawn on a floor, floors of two solids.
+// Polygons that overlap in one plane, e.g. a rug drawn on a floor, or the floors of two solids.
 #include "patchlight/simulate.h"
 #include "patchlight/transport/exchange.h"
 
@@ -42,8 +42,8 @@ double mean_of_walls(const Scene& scene) {
   return flux / area;
 }
 
-// Law: the order of faces in one plane is known, and rounding does not change it. From the rug every direction upward
-// is free, whether its corners are stored below the floor or above it.
+// Law: the order of faces in one plane does not depend on rounding. All upward directions are free from the rug,
+// whether rounding moves its corners below or above the floor.
 TEST(Overlapping, RoundingDoesNotDecideWhichFaceIsAbove) {
   const double extent = std::sqrt(4.0 * 4 + 3 * 3);
   for (const double share : {-2e-7, -2e-8, -2e-9, 0.0, 2e-9, 2e-8, 2e-7}) {
@@ -62,15 +62,15 @@ TEST(Overlapping, RoundingDoesNotDecideWhichFaceIsAbove) {
   }
 }
 
-// Law: a black rug drawn on a floor of reflectance 0.7 is the same as one that the floor is cut out for. The rug's
-// edges cut through the floor's patches, whose exposed part is known to 1 / 32 of a few per cent of them: 0.5 % of the
-// mean irradiance. Were the floor under the rug lit as well, the walls would have 10 % more.
+// Law: a black rug drawn on a floor of reflectance 0.7 equals a rug in a hole of the floor. The edges of the rug cross
+// a few percent of the floor's patches, whose exposed fraction has an error of 1/32. This gives 0.5 % of the mean
+// irradiance. If the floor under the rug were also lit, the walls would receive 10 % more.
 TEST(Overlapping, ARugOnAFloorIsTheSameAsARugInIt) {
   Scene room = furnished_room(0.7);
   room.materials.push_back(grey(0));
   const MaterialIndex black = 2;
   const Scene drawn = with_quad(room, rectangle(0.7, 0.3, 2.9, 2.2), black);
-  // The rug takes the place of the floor, polygon 0, and four pieces around it are added.
+  // The rug replaces the floor, polygon 0, and four pieces around it are added.
   Scene cut = drawn;
   cut.polygons.front() = cut.polygons.back();
   cut.polygons.pop_back();
@@ -82,9 +82,9 @@ TEST(Overlapping, ARugOnAFloorIsTheSameAsARugInIt) {
   EXPECT_NEAR(mean_of_walls(drawn), expected, 0.005 * expected);
 }
 
-// Before closure: with both layers in sight, the ceiling's rows would add up to 1 plus its form factor to the rug, some
-// 0.2. Some 20 of the floor's 100 patches are covered in part, each with a form factor of 1 % or less that its samples
-// know to a fifth or better: 0.05 is five standard errors.
+// Before closure: if both layers were visible, the ceiling's row sums would be 1 plus the form factor to the rug, about
+// 0.2. About 20 of the floor's 100 patches are partly covered. Each has a form factor of at most 1 % with a sampling
+// error of at most a fifth, so 0.05 is five standard errors.
 TEST(Overlapping, NothingIsSeenTwice) {
   const Scene scene =
       with_quad(cube_room(0.5, 0), {Point(0.2, 0.1, 0), Point(0.9, 0.1, 0), Point(0.9, 0.8, 0), Point(0.2, 0.8, 0)});
@@ -97,17 +97,16 @@ TEST(Overlapping, NothingIsSeenTwice) {
       EXPECT_NEAR(exchange.raw_row_sum[i], 1, 0.05) << i;
     }
   }
-  // The floor's patches that the rug covers take no part.
+  // Floor patches under the rug are excluded.
   double covered = 0;
   for (PatchIndex i = 0; i < mesh.size(); ++i) covered += mesh.area[i] * exchange.lost.covered[i];
   EXPECT_NEAR(covered, 0.7 * 0.7, 0.01);
 }
 
-// A lamp drawn in the ceiling's plane shines, whether it comes before or after the ceiling in the file, and when
-// rounding to single precision sets it 1e-7 m before the ceiling or behind it. All of its light, 10 W/m^2 over 0.25
-// m^2, arrives, to 1e-5: where it lies behind, the exposed area of its patches is told from their row sums, so by
-// quadrature. What a wall receives is the same in all six cases, up to the samples, which follow from where patches
-// lie.
+// A lamp in the plane of the ceiling emits, whether it comes before or after the ceiling in the file. Rounding to
+// single precision may move it 1e-7 m in front of the ceiling or behind it. All of its light, 10 W/m^2 over 0.25 m^2,
+// arrives to within 1e-5: behind the ceiling, the exposed area comes from row sums, by quadrature. A wall receives the
+// same in all six cases, up to sampling noise, as the samples depend on the places of patches.
 TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
   double first_flux = 0;
   for (const bool lamp_first : {false, true}) {
@@ -135,13 +134,14 @@ TEST(Overlapping, ALampDrawnOnTheCeilingShines) {
   }
 }
 
-// What stands on a floor without thickness.
+// The object on a floor without thickness.
 enum class OnFloor { box, lamp_in_box };
 
 constexpr double intensity = 10;  // W/sr
 
-// That floor, polygon 0, on it a box, whose bottom is polygon 2, and a luminaire above and below it. Without the small
-// face far above, polygon 1, the floor's plane would go through the middle of all, where no coordinate is rounded.
+// A floor, polygon 0, with a luminaire above it and one below, and an object on it whose bottom is polygon 2. Without
+// the small face far above, polygon 1, the floor's plane would be the center plane of the scene, where no coordinate is
+// rounded.
 Scene floor_between_luminaires(OnFloor what) {
   Scene scene = with_quad(empty_scene({grey(0.5), grey(0.5, 10)}), rectangle(0, 0, 4, 3));
   for (const double height : {-2.0, 2.0}) {
@@ -157,12 +157,12 @@ Scene floor_between_luminaires(OnFloor what) {
   return scene;
 }
 
-// The solid angle of the floor from 2 m below its middle, four times that of a quarter with sides a and b from h:
-// atan(a b / (h sqrt(a^2 + b^2 + h^2))). No light but the luminaire's gets there.
+// The solid angle of the floor, seen from 2 m below its middle, is four times that of a quarter with sides a and b at
+// distance h: atan(a b / (h sqrt(a^2 + b^2 + h^2))). Only the lower luminaire lights this side.
 double flux_from_below() { return intensity * 4 * std::atan(2 * 1.5 / (2 * std::sqrt(2 * 2 + 1.5 * 1.5 + 2 * 2))); }
 
-// Patches on the underside of a polygon in the plane of the floor: their area that is in sight, m^2, what arrives
-// there, W, and the highest irradiance.
+// Patches on the underside of a polygon in the floor's plane: visible area in m^2, arriving flux in W, and highest
+// irradiance.
 struct Underside {
   double area = 0;
   double flux = 0;
@@ -180,7 +180,7 @@ Underside underside_of(const Simulation& simulation, PolygonIndex polygon) {
   return found;
 }
 
-// Light of a point is integrated exactly over each patch: what rounding leaves, relative.
+// The light of a point is integrated exactly over each patch; this is the relative rounding error.
 constexpr double rounding = 1e-9;
 
 Simulation simulated_finely(const Scene& scene) {
@@ -189,16 +189,16 @@ Simulation simulated_finely(const Scene& scene) {
   return simulate(scene, request);
 }
 
-// Law: what stands on a floor without thickness is not seen from below. The box hides none of its underside, and its
-// bottom is dark.
+// Law: an object on a floor without thickness is invisible from below. The box hides none of the floor's underside, and
+// the bottom of the box is dark.
 TEST(Overlapping, ASolidThatStandsOnASheetIsNotLitFromBeyond) {
   const Simulation simulation = simulated_finely(floor_between_luminaires(OnFloor::box));
   EXPECT_NEAR(underside_of(simulation, 0).flux, flux_from_below(), rounding * flux_from_below());
   EXPECT_EQ(underside_of(simulation, 2).highest, 0);
 }
 
-// A lamp that is let into a ceiling without thickness is drawn on it: nothing covers its 1 m by 0.8 m, both together
-// receive what the ceiling alone does, and paths to the lamp find the same.
+// A recessed lamp is drawn on a ceiling without thickness. Nothing covers its 1 m by 0.8 m, both faces together receive
+// the flux on the ceiling alone, and path tracing to the lamp agrees.
 TEST(Overlapping, ALampLetIntoASheetIsInSight) {
   const Scene scene = floor_between_luminaires(OnFloor::lamp_in_box);
   const Simulation simulation = simulated_finely(scene);
@@ -213,7 +213,7 @@ TEST(Overlapping, ALampLetIntoASheetIsInSight) {
   EXPECT_NEAR(lamp.flux / lamp.area, paths.irradiance(0, 0), 4 * paths.standard_error(0, 0));
 }
 
-// With rows of rays that were stored while it was dark, it is still hidden, and a note says so.
+// With rows of rays that were stored while the lamp was dark, it stays hidden, and a note names it.
 TEST(Overlapping, ALampThatWasHiddenWhenRowsWereStoredIsNamed) {
   Request request;
   request.mesh.max_edge = 0.5;

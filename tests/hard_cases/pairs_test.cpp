@@ -1,4 +1,4 @@
-// Pairs of patches: coplanar, straddling each other's plane, half hidden.
+// Pairs of patches that are coplanar, straddle each other's plane or are half hidden.
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
@@ -41,8 +41,8 @@ std::vector<Point> placed(std::vector<Point> polygon, const Eigen::Affine3d& mot
   return polygon;
 }
 
-// Different polygons in one plane see nothing of each other, to the bit: neither neighbours nor distant ones, however
-// the plane is turned and far from the origin as it may be, although rounding lifts corners out of it.
+// Different polygons in one plane exchange exactly nothing, near or far, for any orientation and distance from the
+// origin, although rounding lifts corners out of the plane.
 TEST(CoplanarPolygons, ExchangeExactlyNothing) {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -59,13 +59,13 @@ TEST(CoplanarPolygons, ExchangeExactlyNothing) {
   }
 }
 
-// Patches that cross each other's plane exchange what fine subdivision finds, where nearly all patches lie wholly
-// before or behind: near and far pairs, one straddling or both.
+// Patches that cross each other's plane exchange the same as their fine subdivision, whose pieces lie almost all on one
+// side. The cases are near and far pairs in which one patch or both straddle.
 TEST(StraddlingPatches, AgreeWithFineSubdivision) {
   for (const double distance : {0.6, 1.5, 5.0, 12.0}) {
     for (const double tilt : {-0.4, 0.2, 0.6}) {
       for (const double drop : {-0.2, -0.5, -0.75}) {
-        // Turned to face the first square, then lowered through its plane.
+        // The second square is turned to face the first one and then lowered through its plane.
         const Eigen::Affine3d motion = Eigen::Translation3d(distance + 0.5, 0.2, drop) *
                                        Eigen::AngleAxisd(-tilt, Vector::UnitY()) *
                                        Eigen::AngleAxisd(-M_PI / 2, Vector::UnitY());
@@ -79,8 +79,8 @@ TEST(StraddlingPatches, AgreeWithFineSubdivision) {
   }
 }
 
-// Two opposed unit squares at distance 1 and half way a right triangle over half of their area: by the half turn about
-// the line through the middles it hides half of the exchange.
+// Two opposed unit squares at distance 1 with a right triangle halfway between them that covers half of the cross
+// section. It hides half of the exchange, by symmetry under a half turn about the line through their middles.
 Scene half_hidden(int rotation, bool turned_over) {
   std::vector<Point> triangle{Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5)};
   std::rotate(triangle.begin(), triangle.begin() + rotation, triangle.end());
@@ -89,9 +89,9 @@ Scene half_hidden(int rotation, bool turned_over) {
   return with_polygon(two_polygons(square, ceiling), triangle);
 }
 
-constexpr double half = 0.5 * 0.19982489569838732;  // of the catalogue's value C-11
+constexpr double half = 0.5 * 0.19982489569838732;  // Howell's catalog, C-11
 
-// Whichever corner the triangle begins with and whichever way it is turned, it hides the same rays.
+// The triangle blocks the same rays for any first corner and either orientation.
 TEST(HalfHiddenSquares, DoNotDependOnTheTrianglesFirstCorner) {
   const AssemblyOptions options{256, 1};
   const double expected = exchange_between(half_hidden(0, false), 2, options);
@@ -102,11 +102,11 @@ TEST(HalfHiddenSquares, DoNotDependOnTheTrianglesFirstCorner) {
   }
 }
 
-// Independent samples would know the half to a relative 1 / sqrt(n), n = 4 x `samples` as the pair is near: the share
-// that is hidden has the variance 1/4 (n samples of a coin), the weights vary little. Stratified samples do no worse.
+// n = 4 x `samples` independent rays, as the pair is near, give the half with a relative error of 1 / sqrt(n): the
+// hidden fraction has the variance 1/4 / n, and the weights vary little. Stratified samples are no worse.
 TEST(HalfHiddenSquares, ExchangeHalf) {
-  // 1. Every seed is within three of these standard errors, and with 4,096 samples within 1e-3 of a form factor.
-  // 2. The mean over the seeds is within three of its own standard errors: nothing is biased.
+  // 1. Each seed is within three of these standard errors, and with 4,096 samples within 1e-3 of a form factor.
+  // 2. The mean over the seeds is within three of its own standard errors, so the estimate is unbiased.
   for (const int samples : {16, 64, 256, 4096}) {
     const int seeds = samples == 4096 ? 8 : 128;
     double sum = 0;

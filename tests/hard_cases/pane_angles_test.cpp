@@ -1,4 +1,4 @@
-// What panes let through by the angle of the light.
+// Transmittance of panes by the angle of incidence.
 #include "patchlight/gather/gather.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/exchange_areas.h"
@@ -27,8 +27,9 @@ Material glass(double transmittance) {
 class LampBehindAPane : public testing::TestWithParam<double> {};
 
 TEST_P(LampBehindAPane, LightsAsFresnelSays) {
-  // A sensor sees a square lamp with B = 10 on its axis, 2 m / cos away, through a pane: 10 F T(cos). The lamp is a
-  // fiftieth of that wide, over which T varies by its second derivative, some 10, times 0.01^2 / 6: 0.05 % of T.
+  // A sensor faces a square lamp with B = 10 on its axis, 2 m / cos away, through a pane: 10 F T(cos). The lamp is 1/50
+  // of the distance wide. Averaging over it changes T by its second derivative, about 10, times 0.01^2 / 6: 0.05 % of
+  // T.
   const double angle = GetParam() * std::numbers::pi / 180;
   const double cosine = std::cos(angle);
   const Vector way(std::sin(angle), 0, cosine);
@@ -45,7 +46,7 @@ TEST_P(LampBehindAPane, LightsAsFresnelSays) {
   const std::vector<Sensor> sensor{{Point(distance * way), -way}};
   const Occluder occluder(scene, Occluder::Blockers::all);
   const double found = gather_irradiance(mesh, radiosity, occluder, sensor).irradiance(0, 0);
-  // Of a square on the axis (Howell B-1, four times).
+  // The form factor to a square on the axis, four times Howell B-1.
   const double x = half / distance;
   const double F = 4 / std::numbers::pi * x / std::sqrt(1 + x * x) * std::atan(x / std::sqrt(1 + x * x));
   const double expected = 10 * F * transmittance(pane_of(1.52, 0.8), cosine);
@@ -57,9 +58,9 @@ INSTANTIATE_TEST_SUITE_P(HardCases, LampBehindAPane, testing::Values(0.0, 20.0, 
 class RowsBeforeAPane : public testing::TestWithParam<Estimator> {};
 
 TEST_P(RowsBeforeAPane, AddUpToOneWhateverTheAngle) {
-  // Two cubes with a pane between, closed, before any closure: the end walls see the pane nearly square, where it lets
-  // 0.05 more through than of light from everywhere, the walls beside it at a slant, where it lets less through. With a
-  // share held that does not depend on the angle their rows add up to 1 +- 0.2 times that. The scatter of means over a
+  // Two closed cubes with a pane between them, before closure. The end walls see the pane almost straight on, where it
+  // transmits 0.05 more than diffuse light; the adjacent walls see it at a slant, where it transmits less. With an
+  // absorptance that does not depend on the angle, row sums would be 1 +- 0.2 times that. The scatter of means over a
   // wall is below 0.002.
   Scene scene = empty_scene({grey(0.5), glass(0.8)});
   const std::vector<Quad> first = box_faces(Point(0, 0, 0), Point(1, 1, 1), true);

@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-// A scene measured in a unit of so many metres, and turned or not.
+// A scene in units of this many meters, optionally turned.
 struct Placing {
   double unit = 1;
   bool turned = false;
@@ -44,14 +44,14 @@ Material glass(double transmittance, double reflectance, double exitance = 0) {
   return material;
 }
 
-// The share that such a pane holds back of light from all directions alike.
+// The fraction of diffuse light that a pane does not transmit.
 double held_by(double transmittance) {
   const Scene scene = with_quad(empty_scene({glass(transmittance, 0)}),
                                 {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   return SpecularFaces(scene).held(0, Side::front);
 }
 
-// An upright rectangle in the plane at x, whose front looks to -x or +x.
+// An upright rectangle in a plane of constant x whose front faces -x or +x.
 Quad across_x(double x, double y0, double y1, double z0, double z1, bool to_low_x) {
   Quad quad{Point(x, y0, z0), Point(x, y0, z1), Point(x, y1, z1), Point(x, y1, z0)};
   if (!to_low_x) std::swap(quad[1], quad[3]);
@@ -65,8 +65,8 @@ Scene with_wall_around_opening(Scene scene, double x, double z1, bool to_low_x) 
   return scene;
 }
 
-// Two rooms, 4 x 3 x 2.5 and 3 x 3 x 2.5 m, joined by an opening of 1 x 1.5 m through a wall of 0.2 m; in its middle,
-// the last polygon, stands a pane, material 1. Material 2 is that of the ceiling of the larger one.
+// Two rooms of 4 x 3 x 2.5 and 3 x 3 x 2.5 m, joined by an opening of 1 x 1.5 m through a wall 0.2 m thick. A pane,
+// material 1 and the last polygon, fills the middle of the opening. Material 2 is the ceiling of the larger room.
 Scene joined_rooms(const Material& wall, const Material& pane, const Material& ceiling) {
   Scene scene = empty_scene({wall, pane, ceiling});
   std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -83,7 +83,7 @@ Scene joined_rooms(const Material& wall, const Material& pane, const Material& c
   return scene;
 }
 
-// By pairs, which keep what panes reflect.
+// With pairs, which include the reflection of panes.
 Request fronts(PatchIndex patches) {
   Request request;
   request.assembly.storage = Storage::tiles;
@@ -93,7 +93,7 @@ Request fronts(PatchIndex patches) {
   return request;
 }
 
-// A closed room of 4 x 3 x 2.5 m with a pane of 1.5 m^2 to the open, the last polygon.
+// A closed room of 4 x 3 x 2.5 m with a pane of 1.5 m^2 to the outside, the last polygon.
 Scene room_with_window(double transmittance) {
   Scene scene = empty_scene({grey(0.6, 0.4), glass(transmittance, 0)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -102,12 +102,11 @@ Scene room_with_window(double transmittance) {
   return with_quad(std::move(scene), across_x(4, 1, 2, 0.5, 2, true), 1);
 }
 
-// Transmittance; storage.
+// Transmittance and storage.
 class Window : public testing::TestWithParam<std::tuple<double, Storage>> {};
 
-// The pane sees nothing but the room: sum_i A_i F_i,pane = A_pane, of which it lets through what it does of light from
-// all directions alike, tau. Each of n rays of N patches escapes or does not: the variance of the sum is tau A_pane A /
-// (N n).
+// The pane sees only the room, sum_i A_i F_i,pane = A_pane, and transmits the fraction tau of diffuse light. Each of n
+// rays of N patches escapes or not, so the sum has the variance tau A_pane A / (N n).
 TEST_P(Window, LetsOutItsShareOfTheLight) {
   const auto [stated, storage] = GetParam();
   const double tau = 1 - held_by(stated);
@@ -120,7 +119,7 @@ TEST_P(Window, LetsOutItsShareOfTheLight) {
   const Eigen::Map<const Eigen::VectorXd> area(simulation.mesh.area.data(), simulation.mesh.size());
   const Eigen::VectorXd escaping = area.cwiseProduct(simulation.transport.lost.escaped);
   const double of_pane = escaping.segment(pane.begin, pane.end - pane.begin).sum();
-  const double least_rays = 32;  // of a patch
+  const double least_rays = 32;  // per patch
   const double expected = tau * 1.5;
   const double standard_error = std::sqrt(expected * area.sum() / (least_rays * simulation.mesh.size()));
   EXPECT_NEAR(escaping.sum() - of_pane, expected, 4 * standard_error);
@@ -135,8 +134,9 @@ INSTANTIATE_TEST_SUITE_P(HardCases, Window,
 class FurnaceWithAPane : public testing::TestWithParam<std::tuple<std::pair<double, double>, Placing>> {};
 
 TEST_P(FurnaceWithAPane, IsOneOnBothSides) {
-  // Everything sends out 1: walls E = 1 - rho, the pane E = h - rho, h what it holds of light from all directions, and
-  // what it lets through. So H = 1 everywhere, B = 1 on walls and h of the pane. Rows are closed to rounding.
+  // All light is 1: walls emit E = 1 - rho. The pane emits E = h - rho, where h = 1 - tau is the fraction of diffuse
+  // light that it does not transmit. So H = 1 everywhere, B = 1 on walls and B = h on the pane. Closure makes the row
+  // sums exact up to rounding.
   const auto [of_pane, placing] = GetParam();
   const auto [stated, rho] = of_pane;
   const double held = held_by(stated);
@@ -161,8 +161,8 @@ INSTANTIATE_TEST_SUITE_P(HardCases, FurnaceWithAPane,
                                           testing::Values(Placing{1, false}, Placing{0.001, true})));
 
 TEST(JoinedRooms, AreLitThroughAPaneAsByPaths) {
-  // A lamp is the ceiling of the larger room; walls of the smaller one have what comes through the pane alone. Paths of
-  // 1 % here, patches of 0.3 m: 3 %.
+  // The ceiling of the larger room is the lamp; the walls of the smaller room get light through the pane only. Paths
+  // have an error of 1 %, patches of 0.3 m one of 3 %.
   const Scene scene = joined_rooms(grey(0.6), glass(0.6, 0.2), grey(0.6, 10));
   const Simulation simulation = simulate(scene, fronts(1500));
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -185,8 +185,8 @@ TEST(JoinedRooms, AreLitThroughAPaneAsByPaths) {
   }
 }
 
-// A room with a window of 1 x 1.5 m in its wall at x = 4, behind which 6 x 9 m of ground lie in the sun, which does not
-// shine into the room. The last polygon is the pane, material 1, unless it is a hole.
+// A room with a window of 1 x 1.5 m in its wall at x = 4. Outside, 6 x 9 m of ground lie in the sun, which does not
+// shine into the room. The last polygon is the pane, material 1, unless the window is a hole.
 Scene room_before_lit_ground(const std::optional<Material>& pane) {
   Scene scene = empty_scene({grey(0.5), pane.value_or(grey(0))});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -202,7 +202,7 @@ Scene room_before_lit_ground(const std::optional<Material>& pane) {
 
 struct Readings {
   double mean = 0;  // irradiance of the room's patches, weighted by area
-  Field desk;       // irradiance at sensors by patches
+  Field desk;       // irradiance at sensors
 };
 
 Readings readings_of(const Scene& scene, const Placing& placing) {
@@ -230,7 +230,7 @@ Readings readings_of(const Scene& scene, const Placing& placing) {
 class PaneBeforeLitGround : public testing::TestWithParam<Placing> {};
 
 TEST_P(PaneBeforeLitGround, LetsInWhatAHoleDoes) {
-  // Theorem for a pane that lets all through: within 1 % at patches and at a desk.
+  // A pane that transmits everything changes nothing: within 1 % at patches and at a desk.
   const Placing placing = GetParam();
   const Readings hole = readings_of(placing.of(room_before_lit_ground({})), placing);
   EXPECT_GT(hole.mean, 1);
@@ -241,12 +241,12 @@ TEST_P(PaneBeforeLitGround, LetsInWhatAHoleDoes) {
 
 INSTANTIATE_TEST_SUITE_P(HardCases, PaneBeforeLitGround, testing::Values(Placing{1, false}, Placing{0.001, true}));
 
-// Cosine of the angle at which the camera looks at the pane.
+// Cosine of the angle between the camera's view and the normal of the pane.
 class PaneInAPicture : public testing::TestWithParam<double> {};
 
 TEST_P(PaneInAPicture, ShowsItsOwnLightAndWhatIsBehind) {
-  // A pane with B = 2 before a wall with B = 5: it sends out B (1 - T) / h, and lets T through. A pixel is 4e-4 wide,
-  // by which T varies by less than 1e-4 at 60 degrees.
+  // A pane with B = 2 in front of a wall with B = 5 emits B (1 - T) / h and transmits T. Over a pixel of width 4e-4, T
+  // varies by less than 1e-4 at 60 degrees.
   Scene scene = empty_scene({grey(0.5), glass(0.6, 0.4)});
   scene = with_quad(std::move(scene), across_x(2, -5, 5, -5, 5, true));
   scene = with_quad(std::move(scene), across_x(1, -5, 5, -5, 5, true), 1);
@@ -267,7 +267,7 @@ TEST_P(PaneInAPicture, ShowsItsOwnLightAndWhatIsBehind) {
 INSTANTIATE_TEST_SUITE_P(HardCases, PaneInAPicture, testing::Values(1.0, 0.5));
 
 TEST(PanesOnTheWay, MultiplyForSegmentsAndPackets) {
-  // Three panes and a wall: between places 0 to 4 along x. No panes: the bits of occluded().
+  // Three panes and a wall between places 0 to 4 along x. Without panes the result has the same bits as occluded().
   Scene scene = empty_scene({grey(0.5), glass(0.5, 0), glass(0.8, 0)});
   for (int k = 0; k < 3; ++k)
     scene = with_quad(std::move(scene), across_x(k + 0.5, -5, 5, -5, 5, true), k == 1 ? 2 : 1);
@@ -276,7 +276,7 @@ TEST(PanesOnTheWay, MultiplyForSegmentsAndPackets) {
   const auto at = [](double x) { return Point(x, 0.3, 0.2); };
   const std::vector<Segment> segments{{at(0), at(1)}, {at(0), at(2)},   {at(3), at(0)},
                                       {at(0), at(4)}, {at(0.6), at(1)}, {at(0.5), at(2), 0, no_polygon}};
-  // One that starts on a pane counts as what that sends there, over what it holds.
+  // A segment that starts on a pane is weighted by the pane's directional emission relative to h.
   const std::vector<float> expected{0.5F, 0.4F, 0.2F, 0, 1, static_cast<float>(0.8 * 0.5 / held_by(0.5))};
   const std::vector<float> share = occluder.transmittance(segments);
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_FLOAT_EQ(share[k], expected[k]) << k;

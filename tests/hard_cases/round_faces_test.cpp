@@ -1,4 +1,4 @@
-// Faces whose outlines have many more corners than patches are asked for, as lids of round rooms.
+// Faces whose outlines have many more corners than the requested number of patches, e.g. lids of round rooms.
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
 
@@ -22,7 +22,7 @@ using namespace test;
 
 constexpr double radius = 4;
 
-// On a circle or, where `depth` is not 0, on waves around it, so that the outline turns inward as often as outward.
+// An outline on a circle or, for a nonzero `depth`, on waves around it, so that it turns inward as often as outward.
 std::vector<Point> outline(int corners, double z, double depth = 0) {
   std::vector<Point> points;
   for (int k = 0; k < corners; ++k) {
@@ -33,7 +33,7 @@ std::vector<Point> outline(int corners, double z, double depth = 0) {
   return points;
 }
 
-// A ring: its hole's outline runs the other way and hangs on the outer one by a seam.
+// A ring: the outline of its hole runs the other way and is joined to the outer one by a seam.
 std::vector<Point> ring(int corners) {
   std::vector<Point> points = outline(corners, 0);
   points.push_back(points.front());
@@ -42,7 +42,7 @@ std::vector<Point> ring(int corners) {
   return points;
 }
 
-// A closed room with a round floor and ceiling and as many walls as these have corners.
+// A closed room with a round floor and ceiling, and one wall per corner of these.
 Scene round_room(int corners, double reflectance, double exitance) {
   Scene scene = empty_scene({grey(reflectance, exitance)});
   const std::vector<Point> floor = outline(corners, 0);
@@ -67,9 +67,9 @@ PatchMesh meshed(const std::vector<Point>& corners, double metres, double edge) 
 
 class RoundFace : public testing::TestWithParam<std::tuple<int, double>> {};
 
-// n corners take n - 2 triangles by themselves. The lattice adds a point for four corners, two triangles each: half as
-// many again, and some at its rim; fewer where corners are left out. No area is lost: that of the patches is the
-// polygon's, to rounding.
+// n corners alone need n - 2 triangles. The lattice adds one point, so two triangles, for each four corners: half as
+// many again, and a few at its rim. There are fewer if corners are left out. The area of the patches equals that of the
+// polygon up to rounding.
 TEST_P(RoundFace, TakesNoMoreThanHalfAsManyPatchesAgainAsItsOutline) {
   const auto [corners, metres] = GetParam();
   for (const double depth : {0.0, 0.1}) {
@@ -98,9 +98,9 @@ TEST(RoundFace, OfARingTakesNoMoreEither) {
   EXPECT_NEAR(sum, area_vector(points).norm(), 1e-9 * sum);
 }
 
-// 60 patches a side were asked for; of the outline as it is there were half as many again as its corners. An edge of
-// that many equal triangles follows it with 2 pi r / sqrt(8 r 0.005 edge) = 54 chords, and n chords with one point
-// inside for four of them take 1.5 n triangles.
+// The request is 60 patches per side; the full outline would need half as many again as its corners. The edge is that
+// of 60 equal triangles and follows the circle with 2 pi r / sqrt(8 r 0.005 edge) = 54 chords. With one inner point for
+// four chords, n chords give 1.5 n triangles.
 TEST(RoundFace, OfManyCornersTakesAboutThePatchesAskedFor) {
   for (const int corners : {200, 1000, 10000}) {
     const Scene scene = with_polygon(empty_scene({grey(0.5, 1)}), outline(corners, 0));
@@ -113,9 +113,9 @@ TEST(RoundFace, OfManyCornersTakesAboutThePatchesAskedFor) {
   }
 }
 
-// Two discs r apart on one axis: Howell's C-41 gives F = (3 - sqrt(5)) / 2. Patches lie between the circles of
-// r (1 +- d), d being what is stated of outlines and what 2,000 corners lack of a circle, and exchange areas grow with
-// either disc. That neither loses area leaves much less of it: the error is of second order in d, and d is below 1 %.
+// Two discs on one axis at distance r: Howell's C-41 gives F = (3 - sqrt(5)) / 2. Patches lie between the circles of r
+// (1 +- d), where d covers the stated deviation of outlines and the deviation of 2,000 corners from a circle. Exchange
+// areas grow with either disc. Neither disc loses area, so the error is of second order in d, and d is below 1 %.
 TEST(RoundFace, HasTheFormFactorOfADisc) {
   const auto exchange_area = [](double r1, double r2) {
     const double h = radius;
@@ -142,8 +142,8 @@ TEST(RoundFace, HasTheFormFactorOfADisc) {
   }
 }
 
-// Where small patches are asked for the outline does not matter: as many as of a square with that area, to a fifth, and
-// none longer than asked.
+// For small requested patches the outline does not matter. The number of patches is that of a square of equal area,
+// within a fifth, and no patch is longer than requested.
 TEST(RoundFace, IsCutFinelyWhereThatIsAskedFor) {
   const PatchMesh mesh = meshed(outline(200, 0), 1, 0.3);
   const double of_triangles = std::numbers::pi * radius * radius / (std::sqrt(3.0) / 4 * 0.3 * 0.3);
@@ -156,8 +156,8 @@ TEST(RoundFace, IsCutFinelyWhereThatIsAskedFor) {
   }
 }
 
-// Furnace: E = 1 - rho in a closed room has B = 1, also where slivers of the lid meet narrow walls. Row sums are closed
-// to 1e-10 of the area, which 1 / (1 - rho) = 10 raises; 1e-8 as in other rooms.
+// Furnace: E = 1 - rho in a closed room gives B = 1, even if slivers of the lid meet narrow walls. Row sums are exact
+// to 1e-10 of the area, which 1 / (1 - rho) = 10 amplifies; the limit is 1e-8 as in other rooms.
 TEST(RoundFace, IsTheLidOfAFurnace) {
   for (const double metres : {1.0, 0.001}) {
     const Scene scene = moved(round_room(120, 0.9, 0.1), turned(metres));
@@ -173,8 +173,9 @@ TEST(RoundFace, IsTheLidOfAFurnace) {
   }
 }
 
-// The same with a round plate of 1,000 corners that hangs in a cubic room and shines on both sides, and a lamp of 500
-// in a round hole of its ceiling: the error is that of closure, however the outlines are followed.
+// The same with a round plate of 1,000 corners that hangs in a cubic room and emits on both sides, and a lamp of 500
+// corners in a round hole of the ceiling. The error is that of closure, independent of the approximation of the
+// outlines.
 TEST(RoundFace, InARoomIsPartOfAFurnace) {
   Scene scene = empty_scene({grey(0.9, 0.1)});
   const std::vector<Quad> faces = box_faces(Point(-6, -6, -1), Point(6, 6, 5), true);

@@ -1,5 +1,5 @@
-// What sampling promises: how many rays a near pair gets, how the noise of a measured lost share is weighed, and that a
-// crack is no window.
+// Guarantees of sampling: the number of rays for a near pair, the weight of a noisy measured lost fraction, and cracks
+// that must not count as windows.
 #include "base/sampling.h"
 
 #include "patchlight/transport/assemble.h"
@@ -52,8 +52,8 @@ Moments moments(const std::function<double(std::uint64_t)>& estimate) {
   return {mean, (squares - replicates * mean * mean) / (replicates - 1)};
 }
 
-// The control variate of docs/theory/occluded-form-factors.md, by plain loops: the exact value less the mean of what is
-// blocked.
+// The control variate of docs/theory/occluded-form-factors.md by plain loops: the exact value less the mean blocked
+// part.
 double reference_estimate(const PatchMesh& mesh, const Occluder& occluder, double exact, std::uint32_t rays,
                           std::uint32_t seed) {
   double blocked_weight = 0;
@@ -66,9 +66,9 @@ double reference_estimate(const PatchMesh& mesh, const Occluder& occluder, doubl
   return exact - blocked_weight / rays;
 }
 
-// These pairs, with form factors of 0.2, take most_effort times `samples` rays. With fewer the variance would
-// be larger: with a quarter five to six times, with half 2.3 times. The ratio of two variances of 256 replicates has a
-// standard error of sqrt(2 * 2 / 256) = 1/8: 1.5 is four of these.
+// These pairs have form factors of 0.2 and take most_effort times `samples` rays. A quarter of the rays would give five
+// to six times the variance, half of them 2.3 times. The ratio of two variances of 256 replicates has a standard error
+// of sqrt(2 * 2 / 256) = 1/8; a limit of 1.5 allows four of these.
 TEST(NearPairs, HaveTheVarianceOfAllTheirSamples) {
   const std::vector<Quad> seconds{{Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)},   // opposite
                                   {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 1), Point(0, 0, 1)}};  // sharing an edge
@@ -96,10 +96,10 @@ TEST(NearPairs, HaveTheVarianceOfAllTheirSamples) {
   }
 }
 
-// A cube without lid has no occluders: its rows are exact to 1e-6. The lost share that 256 rays measure is not: it
-// scatters by up to sqrt(p (1 - p) / 256) = 0.03, stratified by less. Closure weighs the two: entries with an error of
-// 2 % in a row of 150 of equal size say 0.02 / sqrt(150) = 0.0016 about the sum, so at most a few per cent of the
-// scatter may go over to the rows. Were the measured share taken for exact, all of it would.
+// A cube without a lid has no occluders, so its rows are exact to 1e-6. The lost fraction measured with 256 rays
+// scatters by up to sqrt(p (1 - p) / 256) = 0.03, less with stratification. Closure weighs both. 150 equal entries with
+// an error of 2 % give the row sum to 0.02 / sqrt(150) = 0.0016. Therefore at most a few percent of the scatter may
+// reach the rows. All of it would if closure took the measured fraction as exact.
 TEST(OpenScene, ClosureWeighsTheLostSharesNoise) {
   Scene scene = cube_room(0.5, 1);
   scene.polygons.erase(scene.polygons.begin() + 1);
@@ -119,8 +119,8 @@ TEST(OpenScene, ClosureWeighsTheLostSharesNoise) {
   EXPECT_LT(rms(rows - exact), 0.1 * scatter);
 }
 
-// The other way round: where entries are far off and the share well known, the rows follow the share. Every entry is
-// given 10 % too large; with a million rays the binomial error is 5e-4.
+// The opposite case: the entries have large errors, the lost fraction is accurate, and the rows must follow it. Every
+// entry is 10 % too large; a million rays have a binomial error of 5e-4.
 TEST(OpenScene, ClosureMendsEntriesByAWellKnownLostShare) {
   Scene scene = cube_room(0.5, 1);
   scene.polygons.erase(scene.polygons.begin() + 1);
@@ -137,9 +137,9 @@ TEST(OpenScene, ClosureMendsEntriesByAWellKnownLostShare) {
   EXPECT_LT((rows - exact).abs().maxCoeff(), 3 * 5e-4);
 }
 
-// A cube whose floor lies 1e-4 m too low: through slits of 4 x 1e-4 m^2 leaves that share of the rays from its 6 m^2,
-// 41 of 614,400. On the second try they start again 1 % nearer to the centroid of their patch, uniformly up to 5e-4 m:
-// so one in ten meets the slit again.
+// A cube whose floor lies 1e-4 m too low. Slits of 4 x 1e-4 m^2 lose that fraction of the rays from its 6 m^2, 41 of
+// 614,400. The second try starts up to 5e-4 m, or 1 %, closer to the patch centroid, uniformly distributed, so one ray
+// in ten meets the slit again.
 TEST(LostRays, OnTheirSecondTryMissTheCrack) {
   Scene scene = cube_room(0.5, 1);
   for (const std::uint32_t corner : scene.polygons[0].corners) scene.vertices[corner].z() -= 1e-4;
@@ -150,8 +150,8 @@ TEST(LostRays, OnTheirSecondTryMissTheCrack) {
   EXPECT_LT(rays, 41.0 / 4);
 }
 
-// A closed box stands on a floor, in one plane with it: a ray from the floor below starts in the plane of the box's
-// bottom and meets nothing; the second try finds it. These patches are covered, wholly, and nothing escapes.
+// A closed box stands on a floor in the plane of its bottom. A ray from the floor below starts in that plane and meets
+// nothing; the second try finds the bottom. These patches are fully covered, and no light escapes.
 TEST(LostRays, UnderASolidThatStandsOnTheFloorAreCovered) {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(2, 2, 2), true);
   scene = with_box(std::move(scene), Point(0.5, 0.5, 0), Point(1.5, 1.5, 0.7), false);

@@ -36,11 +36,11 @@ Request fronts(PatchIndex patches, Storage storage) {
   return request;
 }
 
-// The sheet of a room that is divided at x = 2.
+// The polygon of the sheet that divides the room at x = 2.
 constexpr PolygonIndex dividing = 6;
 
-// A closed room of 4 x 3 x 2.5 m of material 0, but for its walls at high and at low x, of materials 2 and 3, with a
-// sheet across it of material 1.
+// A closed room of 4 x 3 x 2.5 m, divided by a sheet. Material 0 is the room, 1 the sheet, 2 the wall at high x, 3 the
+// wall at low x.
 Scene divided_room(std::vector<Material> materials) {
   Scene scene = empty_scene(std::move(materials));
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -51,7 +51,7 @@ Scene divided_room(std::vector<Material> materials) {
   return with_quad(std::move(scene), {Point(2, 0, 0), Point(2, 3, 0), Point(2, 3, 2.5), Point(2, 0, 2.5)}, 1);
 }
 
-// All that shines is the wall at low x, and a box stands against the sheet on that side.
+// Only the wall at low x emits, and a box touches the sheet on that side.
 Scene lit_from_one_side(double tau) {
   const Scene scene = divided_room({grey(0.6), sheet(0.3, tau), grey(0.5), grey(0, 10)});
   return with_box(scene, Point(1.4, 0.8, 0), Point(2, 1.7, 1.1), false);
@@ -83,7 +83,7 @@ std::string refusal_of(const Scene& scene, const Request& request) {
 class SheetFurnace : public testing::TestWithParam<std::tuple<Storage, double, double>> {};
 
 TEST_P(SheetFurnace, IsOne) {
-  // Walls emit 1 - rho and both sides of the sheet 1 - rho - tau: B = H = 1 everywhere.
+  // Walls emit 1 - rho, and both sides of the sheet 1 - rho - tau: B = H = 1 everywhere.
   const auto [storage, rho, tau] = GetParam();
   const Material wall = grey(0.6, 0.4);
   Scene scene = divided_room({wall, sheet(rho, tau, 1 - rho - tau), wall, wall});
@@ -103,9 +103,10 @@ double mean_on(const Simulation& simulation, PolygonIndex polygon, Side side) {
 }
 
 TEST(Sheet, BetweenInfinitePlates) {
-  // Walls between both plates are perfect mirrors, so that each plate sees the sheet alone:
+  // The walls between the plates are perfect mirrors, so each plate sees only the sheet:
   // B_1 = E_1 + rho_1 B_b, B_b = E + rho B_1 + tau B_2, B_f = E + rho B_2 + tau B_1, B_2 = E_2 + rho_2 B_f.
-  // All of them shine about alike, as lamps that are found apart are seen over so many mirrors only.
+  // All surfaces emit similar amounts, because bright lamps are handled separately and seen over a limited number of
+  // mirrors.
   const double E_1 = 3, E_2 = 2.5, E = 2, rho_1 = 0.2, rho_2 = 0.7, rho = 0.3, tau = 0.5;
   Material mirror = grey(0);
   mirror.specular_reflectance = Spectrum::Ones(1);
@@ -116,14 +117,14 @@ TEST(Sheet, BetweenInfinitePlates) {
   K << rho_1 * rho, rho_1 * tau, rho_2 * tau, rho_2 * rho;
   const Eigen::Vector2d B =
       (Eigen::Matrix2d::Identity() - K).inverse() * Eigen::Vector2d(E_1 + rho_1 * E, E_2 + rho_2 * E);
-  // What a mirror keeps is 1e-6 at least; rays that meet mirrors more than 64 times are one in 10,000.
+  // Mirrors absorb at least 1e-6; one ray in 10,000 meets mirrors more than 64 times.
   EXPECT_NEAR(mean_on(simulation, dividing, Side::back) / B[0], 1, 1e-3);
   EXPECT_NEAR(mean_on(simulation, dividing, Side::front) / B[1], 1, 1e-3);
   EXPECT_NEAR(mean_on(simulation, 5, Side::front) / (E + rho * B[0] + tau * B[1]), 1, 1e-3);
   EXPECT_NEAR(mean_on(simulation, 3, Side::front) / (E + rho * B[1] + tau * B[0]), 1, 1e-3);
 }
 
-// Flux on the wall at low x by the wall at high x, or the other way round.
+// Flux from the wall at high x to the wall at low x, or the other way round.
 double flux_across(bool from_low, double rho_back) {
   const Material lamp = grey(0.5, 1), dark = grey(0.5);
   Material back = sheet(rho_back, 0.4);
@@ -137,8 +138,7 @@ double flux_across(bool from_low, double rho_back) {
 }
 
 TEST(Sheet, LetsLightThroughAlikeBothWays) {
-  // R is its own adjoint also where the sides reflect differently and something lies against one of them; the solver
-  // leaves 1e-6.
+  // R is self-adjoint even if the sides reflect differently and a box touches one of them. The solver's error is 1e-6.
   for (const double rho_back : {0.2, 0.6})
     EXPECT_NEAR(flux_across(true, rho_back) / flux_across(false, rho_back), 1, 1e-5) << rho_back;
 }
@@ -155,7 +155,7 @@ TEST_P(LitSheet, LosesNothing) {
 }
 
 TEST_P(LitSheet, LightsBothRoomsAsPathsDo) {
-  // The means over whole faces, of patches by paths that know no others.
+  // Means over whole faces, against path tracing without patches.
   const Scene scene = lit_from_one_side(0.5);
   const Simulation simulation = simulate(scene, fronts(3000, GetParam()));
   const KeptSides sides = kept_sides(scene, Sides::front);
@@ -194,7 +194,7 @@ TEST_P(LitSheet, ThatLetsNothingThroughIsAWall) {
 }
 
 TEST_P(LitSheet, IsCutAlikeOnBothSides) {
-  // Also where the light differs, and a box lies against one side: no patch there has one on its other side.
+  // The same if the light differs and a box touches one side: a patch there has no counterpart on the other side.
   Request request = fronts(300, GetParam());
   request.accuracy.relative_error = 0.03;
   const Simulation simulation = simulate(lit_from_one_side(0.5), request);
@@ -218,7 +218,7 @@ TEST_P(LitSheet, IsCutAlikeOnBothSides) {
 INSTANTIATE_TEST_SUITE_P(HardCases, LitSheet, testing::Values(Storage::tiles, Storage::rays));
 
 TEST(Sheet, IsDarkForWhatLiesInItsPlane) {
-  // A black room with a lamp that stands on edge in the plane of a sheet: no light arrives on it from there.
+  // A black room with a lamp on edge in the plane of a sheet, which gets no light from it.
   Scene scene = empty_scene({grey(0), sheet(0.4, 0.4), grey(0, 10)});
   scene = with_quad(std::move(scene), {Point(2, 0, 0), Point(2, 1, 0), Point(2, 1, 2), Point(2, 0, 2)}, 1);
   scene = with_quad(std::move(scene), {Point(2, 2, 0), Point(2, 3, 0), Point(2, 3, 2), Point(2, 2, 2)}, 2);
@@ -227,7 +227,7 @@ TEST(Sheet, IsDarkForWhatLiesInItsPlane) {
 }
 
 TEST(Sheet, LetsTheSunIntoAClosedBox) {
-  // The lid of a black box is a sheet of reflectance 0, the sun stands above it: tau E_n sin(altitude) A gets in.
+  // The lid of a black box is a sheet of reflectance 0 below the sun: the flux tau E_n sin(altitude) A enters.
   const double tau = 0.6, altitude = 0.9;
   Scene scene = empty_scene({grey(0), sheet(0, tau)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(2, 1, 1), true);

@@ -1,4 +1,5 @@
-// What shines through small openings arrives: patches behind walls with slits, slats, bars and holes, against paths.
+// Light through small openings reaches the patches behind walls with slits, slats, bars and holes; the reference is
+// path tracing.
 #include "patchlight/gather/gather.h"
 #include "patchlight/simulate.h"
 
@@ -28,7 +29,7 @@ struct Mean {
   double error = 0;  // one standard error
 };
 
-// The mean irradiance of the far wall by paths from 64 parts of it.
+// Mean irradiance of the far wall by paths, from 64 parts of it.
 Mean by_paths(const Scene& scene) {
   std::vector<PathReceiver> parts;
   const double step = 0.25;
@@ -53,7 +54,7 @@ Simulation simulated(const Scene& scene, double size, std::uint64_t seed = 1) {
   return simulate(scene, request);
 }
 
-// The same of patches. Their errors are those of the sampling, as if independent.
+// The same from patches. Their errors are sampling errors, treated as independent.
 Mean by_patches(const Simulation& simulation) {
   const PatchRange wall = simulation.mesh.patches_on(far_wall, Side::front);
   const Eigen::Index count = wall.end - wall.begin;
@@ -77,7 +78,7 @@ TEST_P(SmallOpenings, LetThroughWhatPathsFind) {
   }
 }
 
-// The same for sensors on the far wall: what they gather has the errors of the patches' light, and of their own rays.
+// The same for sensors on the far wall: their errors come from the light of the patches and from their own rays.
 TEST_P(SmallOpenings, LightSensorsAsPathsFind) {
   const Scene scene = divided(GetParam().partition);
   const std::vector<Point> spots{Point(2, 0.7, 0.35), Point(2, 1.1, 1.0), Point(2, 1.6, 1.8)};
@@ -114,8 +115,8 @@ INSTANTIATE_TEST_SUITE_P(All, SmallOpenings,
                                          Opening{"holes_98", perforated(8, 0.98)}),
                          [](const auto& one) { return one.param.name; });
 
-// Four seeds of the slits: what each patch's irradiance scatters by, and what is stated. Patches err by pairs of their
-// own: those of the far wall alone, 64, know the ratio to 1 / sqrt(2 x 3 x 64) = 5 %.
+// The scatter of each patch's irradiance over four seeds of the slits, against the stated error. Errors of patches are
+// almost independent: the 64 patches of the far wall alone give the ratio to 1 / sqrt(2 x 3 x 64) = 5 %.
 TEST(SlitsSeeds, ScatterAsStated) {
   const Scene scene = divided(slits(20, 0.02));
   constexpr int seeds = 4;

@@ -1,4 +1,4 @@
-// Hard systems: reflectances of nearly 1 and of 1, patches that see nothing.
+// Difficult systems: reflectances close to 1 or equal to 1, and isolated patches.
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
@@ -35,9 +35,9 @@ Scene uniform_room(double reflectance, double exitance) {
 
 class Furnace : public testing::TestWithParam<double> {};
 
-// E = 1 - rho in a closed room has B = 1. The solver's bound is on ||B - B_k|| / ||B - E|| in the area norm: 1e-10 of
-// that. Row sums are met to 1e-10 of the area, so that B is off by as much: (I - rho F) 1 = 1 - rho (1 + d) gives |B -
-// 1| <= rho d / (1 - rho) if all d have one sign, which CG's residuals have not; 1e-8 holds up to rho = 0.99 even then.
+// E = 1 - rho in a closed room gives B = 1. The solver bounds ||B - B_k|| / ||B - E|| by 1e-10 in the area norm. Row
+// sums are exact to d = 1e-10 of the area: (I - rho F) 1 = 1 - rho (1 + d) gives |B - 1| <= rho d / (1 - rho) if all d
+// have one sign. The residuals of CG do not, but 1e-8 holds up to rho = 0.99 even then.
 TEST_P(Furnace, RadiosityIsOneToOneInAHundredMillion) {
   const double rho = GetParam();
   Request request = coarse(1e-10, 100'000);
@@ -51,19 +51,19 @@ TEST_P(Furnace, RadiosityIsOneToOneInAHundredMillion) {
 
 INSTANTIATE_TEST_SUITE_P(Reflectances, Furnace, testing::Values(0.01, 0.5, 0.9, 0.99, 0.999));
 
-// A lamp in a room of rho = 0.999: every ray is reflected a thousand times. All that is emitted is found again.
+// A lamp in a room of rho = 0.999: light is reflected a thousand times. All emitted flux is accounted for.
 TEST(NearlyPerfectReflection, BalancesEnergyToABillionth) {
   Request request = coarse(1e-9, 100'000);
   const Simulation simulation = simulate(furnished_room(0.999, 10), request);
   ASSERT_TRUE(simulation.solution.converged);
   EXPECT_LT(simulation.balance.imbalance, 1e-9);
-  // The room is closed: what its black lamp and its walls absorb is what is emitted, to the exactness of row sums.
+  // The room is closed: its black lamp and its walls absorb the emitted flux, up to the error of row sums.
   EXPECT_EQ(simulation.transport.closure, "least squares");
   EXPECT_NEAR(simulation.balance.absorbed[0], simulation.balance.emitted[0], 1e-8 * simulation.balance.emitted[0]);
 }
 
-// No light is ever absorbed: there is no answer. The survey says so beforehand, and the solver before any iteration,
-// without a bound; what it hands out is the light of the lamps alone.
+// No surface absorbs light, so no solution exists. The survey reports it in advance, and the solver stops before the
+// first iteration without a bound. It returns the light of the lamps alone.
 TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
   const Scene scene = uniform_room(1, 1);
   const Diagnostics problems = survey(scene).diagnostics;
@@ -84,8 +84,8 @@ TEST(PerfectReflection, InAClosedRoomHasNoAnswerAndIsSaidToHaveNone) {
   }
 }
 
-// The Cornell box with its white at Kd = 1, as some files have it, is open: light leaves, and there is an answer. The
-// red and green walls absorb, the opening lets through; the balance closes to the tolerance.
+// The Cornell box with white at Kd = 1, as in some files, is open. Light leaves, and the red and green walls absorb, so
+// a solution exists. The balance closes to the tolerance.
 TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   const ReadOptions white{.settings = {parse_material_setting("white.reflectance=1")}};
   const Scene scene = repair(read_scene(mesh_folder() / "cornell_box.obj", white));
@@ -100,7 +100,7 @@ TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
     const Simulation simulation = simulate(scene, request);
     ASSERT_TRUE(simulation.solution.converged) << name_of(solver);
     EXPECT_GT((simulation.balance.escaped / simulation.balance.emitted).minCoeff(), 0.1);
-    // What is left over is sum_i A_i sum_j F_ij r_i, at most sqrt(A) ||r||_A. As rho = 1 the bound of every patch stops
+    // The remainder is sum_i A_i sum_j F_ij r_i, at most sqrt(A) ||r||_A. For rho = 1 the bound of every patch stops
     // the solver: ||v||_A max |r_j| / g_j <= 1e-8 ||B - E||_A, with v >= 1 and g <= 1.5, so ||r||_A <= 1.5e-8 ||B -
     // E||_A.
     const double area = simulation.problem.area.sum();
@@ -111,8 +111,8 @@ TEST(PerfectReflection, InTheOpenCornellBoxIsSolvedAndWarnedOf) {
   }
 }
 
-// Two white boards 0.4 mm apart in a room: light takes hundreds of bounces to get out from between them. By rays it is
-// followed there by itself, so that the solver's bound is known, and holds against a solution to a hundredth of it.
+// Two white boards 0.4 mm apart in a room: light needs hundreds of bounces to leave the gap. Rays simulate this light
+// separately, so the solver has a finite bound. The bound holds against a solution with a hundredth of the tolerance.
 TEST(PerfectReflection, BetweenBoardsCloseToEachOtherIsSolvedWithABound) {
   Scene scene = empty_scene({grey(0.5), grey(0.5, 10), grey(1)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(2, 2, 2), true);
@@ -133,11 +133,12 @@ TEST(PerfectReflection, BetweenBoardsCloseToEachOtherIsSolvedWithABound) {
   request.solver.relative_error = 1e-5;
   const Simulation tight = simulate(scene, request);
   const Field off = (loose.solution.radiosity - tight.solution.radiosity).abs();
-  // Smoothing is linear but for what it keeps out; what is followed apart is so to a hundredth of the tolerance.
+  // Smoothing is linear except for the light that it excludes. The separately simulated light is exact to a hundredth
+  // of the tolerance.
   EXPECT_LE((off - 1.1 * loose.solution.error).maxCoeff(), 1e-5 * tight.solution.radiosity.maxCoeff());
 }
 
-// A lamp alone, two lamps back to back, and a lamp beside one in its plane: B = E to the bit, with no iteration.
+// A single lamp, two lamps back to back, or two coplanar lamps: B = E to the bit, without iterations.
 TEST(IsolatedPatches, KeepTheirExitance) {
   const Quad square{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
   const Quad behind{Point(0, 0, -1), Point(0, 1, -1), Point(1, 1, -1), Point(1, 0, -1)};
@@ -155,7 +156,7 @@ TEST(IsolatedPatches, KeepTheirExitance) {
   }
 }
 
-// Beside a lit room, too: a lamp outside that looks away from it.
+// The same next to a lit room: a lamp outside that faces away from it.
 TEST(IsolatedPatches, KeepTheirExitanceBesideALitRoom) {
   Scene scene = furnished_room(0.6);
   const auto lamp = static_cast<PolygonIndex>(scene.polygons.size());

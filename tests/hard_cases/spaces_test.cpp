@@ -22,7 +22,7 @@ KeptSides both_sides(const Scene& scene) {
   return sides;
 }
 
-// Just before a patch, in the office's own coordinates.
+// A point in front of a patch, in the coordinates of the office.
 Point before(const PatchMesh& mesh, PatchIndex i, double unit) {
   const Eigen::AngleAxisd turn(0.7, Vector(1, 2, 3).normalized());
   return turn.inverse() * Vector((mesh.centroid[i] + 1e-4 * unit * mesh.normal[i]) / unit);
@@ -54,7 +54,7 @@ Scene with_overhang(Scene scene) {
   return with_quad(std::move(scene), {Point(0, -1.2, 3), Point(4, -1.2, 3), Point(4, 0, 3), Point(0, 0, 3)}, 0);
 }
 
-// Without the wall of the pane.
+// The office without the wall that holds the pane.
 Scene with_open_wall(Scene scene) {
   scene.polygons.erase(scene.polygons.begin() + 2);
   return scene;
@@ -65,7 +65,7 @@ Eigen::VectorXd enclosed_in(const Scene& scene, const PatchMesh& mesh) {
 }
 
 TEST(Spaces, RoomsAreEnclosedWhateverTheirShells) {
-  // In m and in mm, and with a plain of 20 km far below, whose size rays have to bear.
+  // In m and in mm, above a plain of 20 km, which raises the rounding error of rays.
   const Scene office = with_overhang(daylight_office());
   const Scene on_a_plain = with_quad(
       office, {Point(-1e4, -1e4, -50), Point(1e4, -1e4, -50), Point(1e4, 1e4, -50), Point(-1e4, 1e4, -50)}, 3);
@@ -86,7 +86,7 @@ TEST(Spaces, RoomsAreEnclosedWhateverTheirShells) {
 }
 
 TEST(Spaces, NothingIsEnclosedInTheOpen) {
-  // A table's top over a pavement.
+  // A table top above a pavement.
   Scene scene = empty_scene({named("stone", 0.5)});
   scene = with_quad(std::move(scene), {Point(-9, -9, 0), Point(9, -9, 0), Point(9, 9, 0), Point(-9, 9, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0.8), Point(1, 0, 0.8), Point(1, 1, 0.8), Point(0, 1, 0.8)});
@@ -94,7 +94,7 @@ TEST(Spaces, NothingIsEnclosedInTheOpen) {
 }
 
 TEST(Spaces, AGapBelowABuildingIsNoRoom) {
-  // A block of 400 x 30 x 60 m stands 10 cm above the ground.
+  // A block of 400 x 30 x 60 m, 10 cm above the ground.
   for (const double unit : {1.0, 1e-3}) {
     Scene scene =
         with_box(empty_scene({named("stone", 0.5)}), unit * Point(0, 0, 0.1), unit * Point(400, 30, 60), false);
@@ -107,8 +107,8 @@ TEST(Spaces, AGapBelowABuildingIsNoRoom) {
 }
 
 TEST(Spaces, AnOpenWallLeavesTheRoomInside) {
-  // The wall is an eighth of the room's surface, so light stays for four reflections with about (7/8)^4 = 0.59, at the
-  // back with more: sixteen walks may miss that for a patch or two. Facades are outside.
+  // The opening is an eighth of the room's surface, so light survives four reflections with about (7/8)^4 = 0.59, more
+  // at the back. Sixteen walks may misjudge a patch or two. Facades are outside.
   const Scene scene = turned(with_open_wall(daylight_office()), 1);
   const PatchMesh mesh = tessellate(scene, both_sides(scene), 1);
   const Eigen::VectorXd enclosed = enclosed_in(scene, mesh);
@@ -127,7 +127,7 @@ TEST(Spaces, AnOpenWallLeavesTheRoomInside) {
 }
 
 TEST(Spaces, TheErrorByDaylightIsThatInside) {
-  // The overhang leaves no shell closed. Most of the light is outside, so that the error relative to all of it is less.
+  // With the overhang no shell is closed. Most of the light is outside, so the error relative to all light is smaller.
   const Scene scene = with_overhang(daylight_office());
   Request request;
   request.mesh.patches = 600;
@@ -143,7 +143,7 @@ TEST(Spaces, TheErrorByDaylightIsThatInside) {
 }
 
 TEST(Spaces, AllCountsWhereNoDaylightGetsIn) {
-  // The pane is boarded up, and the luminaire is off.
+  // The pane is opaque, and the luminaire is off.
   Scene scene = daylight_office();
   scene.polygons[2].material = 0;
   scene.luminaires.clear();
@@ -156,7 +156,8 @@ TEST(Spaces, AllCountsWhereNoDaylightGetsIn) {
 }
 
 TEST(Spaces, ErrorsAreStatedApart) {
-  // Each as an interest in that side alone states it, on the same mesh. Of the light the room has less than a tenth.
+  // Each error equals that of a run with interest in this side alone on the same mesh. The room has less than a tenth
+  // of the light.
   const Scene scene = daylight_office();
   Request request;
   request.mesh.patches = 600;

@@ -1,4 +1,4 @@
-// Solids that only the face they stand on closes.
+// Solids that are closed only by the face below them.
 #include "patchlight/form_factors.h"
 #include "patchlight/simulate.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-// A room with a lamp under its ceiling and a block on its floor, whose bottom is the 13th polygon, if it has one.
+// A room with a lamp under its ceiling and a block on its floor. The block's bottom, if any, is polygon 13.
 Scene room_with_block(bool bottom) {
   Scene scene = with_box(empty_scene({grey(0.6), grey(0, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   scene =
@@ -28,8 +28,8 @@ Scene room_with_block(bool bottom) {
   return scene;
 }
 
-// Patches of the floor that reach under the block send no light into it: it is dark inside, and elsewhere the light is
-// that around a closed block, within the bars. A bar of a patch is one standard error of either solution.
+// Floor patches that extend under the block send no light into it. The inside is dark, and elsewhere the light matches
+// that around a closed block within the bars. The bar of a patch is one standard error of either solution.
 TEST(StandingBlock, WithoutABottomIsDarkInside) {
   Request request;
   request.mesh.patches = 300;
@@ -55,7 +55,7 @@ TEST(StandingBlock, WithoutABottomIsDarkInside) {
   EXPECT_LT(largest, 4);
 }
 
-// A floor of 4 x 4 m and a block on it that lies over parts of four of its patches of 1 m, black, the sun overhead.
+// A black floor of 4 x 4 m under the sun at the zenith, and a block that covers parts of four of its patches of 1 m.
 Scene block_in_the_sun(bool bottom, double size, bool rug) {
   Scene scene = with_quad(empty_scene({grey(0)}), {Point(0, 0, 0), Point(4, 0, 0), Point(4, 4, 0), Point(0, 4, 0)});
   for (const Quad& face : box_faces(Point(1.25, 1.25, 0), Point(2.75, 2.75, 1), false)) {
@@ -71,7 +71,7 @@ Scene block_in_the_sun(bool bottom, double size, bool rug) {
   return scene;
 }
 
-// With and without a bottom; metres and millimetres; storage; with and without a rug on the same floor.
+// With and without a bottom; meters and millimeters; storage; with and without a rug on the same floor.
 class BlockInTheSun : public testing::TestWithParam<std::tuple<bool, double, Storage, bool>> {};
 
 Simulation solved_in_the_sun(const std::tuple<bool, double, Storage, bool>& of, bool contact_lines) {
@@ -85,8 +85,8 @@ Simulation solved_in_the_sun(const std::tuple<bool, double, Storage, bool>& of, 
   return simulate(block_in_the_sun(bottom, size, rug), request);
 }
 
-// What of a patch is not under the block is lit as ever: 100 W/m^2, within four times what the share that is exposed
-// may be off. All light arrives: 100 W for each m^2 of the floor, whichever face it falls on.
+// The part of a patch beside the block gets 100 W/m^2, within four times the error of the exposed fraction. All light
+// arrives, 100 W for each m^2 of the floor, on whichever face it falls.
 TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
   const double size = std::get<1>(GetParam());
   const Simulation lit = solved_in_the_sun(GetParam(), false);
@@ -101,7 +101,7 @@ TEST_P(BlockInTheSun, StandsOnPatchesThatAreLitBesideIt) {
   EXPECT_GE(partly_covered, 4);
 }
 
-// Patches end where the block does, and none are left below: all those beside it are lit as ever, 100 W/m^2.
+// Patches end at the block, and none are left below it. All patches beside it get 100 W/m^2.
 TEST_P(BlockInTheSun, HasNoPatchesBelow) {
   const double size = std::get<1>(GetParam());
   const Simulation lit = solved_in_the_sun(GetParam(), true);
@@ -122,9 +122,9 @@ INSTANTIATE_TEST_SUITE_P(HardCases, BlockInTheSun,
 
 class BlockLitByABall : public testing::TestWithParam<Storage> {};
 
-// Of patches that lie under the block as a whole no ray finds a part that is exposed. What is uncertain of the light
-// beside them, in the soft edge of the block's shadow, is not made a million times as much by their exposed area, which
-// is taken as a millionth: nowhere is a standard error larger than the light that arrives without a shadow.
+// No ray finds an exposed part of a patch that lies entirely under the block; its exposed area counts as a millionth.
+// The uncertain light at the soft edge of the shadow must not be multiplied by a million. No standard error exceeds the
+// irradiance without a shadow.
 TEST_P(BlockLitByABall, LeavesNoErrorUnderIt) {
   Scene scene = with_box(empty_scene({grey(0.6)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   for (const Quad& face : box_faces(Point(1.1, 0.9, 0), Point(2.3, 1.7, 1), false))
@@ -151,9 +151,9 @@ TEST_P(BlockLitByABall, LeavesNoErrorUnderIt) {
 
 INSTANTIATE_TEST_SUITE_P(HardCases, BlockLitByABall, testing::Values(Storage::tiles, Storage::rays));
 
-// The same on a clear floor, which holds back what a pane of 0.5 does, with form factors that are known, as from a
-// folder, where what is of materials is not: that share of 100 W for each m^2 beside the block, 100 on its top of 2.25
-// m^2.
+// The same on a clear floor of transmittance 0.5 with known form factors, e.g. from a folder, which do not depend on
+// materials. Each m^2 of floor beside the block receives 100 W times the fraction that is not transmitted. The top of
+// 2.25 m^2 receives 100 W/m^2.
 TEST(BlockOnAPane, IsLitAroundWithKnownFormFactors) {
   Scene scene = block_in_the_sun(true, 1, false);
   scene.materials.push_back(scene.materials[0]);

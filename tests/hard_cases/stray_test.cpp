@@ -1,4 +1,4 @@
-// Faces and vertices far from the rest of a model: they change nothing where it is.
+// Faces and vertices far from the rest of a model do not change the results for that rest.
 #include "patchlight/simulate.h"
 
 #include "scene/repair.h"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// The furnished room with a table in it, 5 cm its legs and 2 cm its top.
+// The furnished room with a table whose legs are 5 cm thick and whose top is 2 cm.
 Scene room_with_table() {
   Scene scene = furnished_room(0.6);
   for (const auto& [x, y] : {std::pair{2.6, 1.2}, {3.35, 1.2}, {2.6, 1.95}, {3.35, 1.95}})
@@ -41,8 +41,8 @@ Simulation solved(const Scene& scene, double metres_per_unit) {
   return simulate(scene, request);
 }
 
-// The light of the room is that of the room alone: both have a form factor error of 1e-3
-// (docs/benchmarks/form-factors.md), twice.
+// The light equals that of the room alone. Both have a form factor error of 1e-3 (docs/benchmarks/form-factors.md), so
+// the limit is twice that.
 TEST(StrayTriangle, LeavesTheRoomAsItIs) {
   const Scene alone = repair(room_with_table());
   const Simulation expected = solved(alone, 1);
@@ -60,7 +60,7 @@ TEST(StrayTriangle, LeavesTheRoomAsItIs) {
   }
 }
 
-// A corner of one face astray: a triangle from the floor to far away.
+// One corner of a face is misplaced: a triangle reaches from the floor to a distant point.
 TEST(StrayVertex, LosesNoOtherFace) {
   for (const double far : {1e4, 1e5}) {
     for (const double unit : {1.0, 0.001}) {
@@ -74,7 +74,7 @@ TEST(StrayVertex, LosesNoOtherFace) {
   }
 }
 
-// A room of which nothing is far away, on ground so large that its welding would make lines of the table's edges: less
+// The room stands on very large ground. Welding relative to its size would collapse the table's edges to lines, so less
 // is welded.
 TEST(LargeGround, KeepsWhatStandsOnIt) {
   Scene scene = empty_scene({grey(0.5), grey(0, 10)});

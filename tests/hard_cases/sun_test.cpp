@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-// A closed box of 4 x 5 x 3 m with a square hole in its roof, which consists of four rectangles around it.
+// A closed box of 4 x 5 x 3 m with a square hole in its roof, which consists of four rectangles.
 Scene box_with_hole(double edge) {
   Scene scene = empty_scene({grey(0.5)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 5, 3), true);
@@ -31,12 +31,12 @@ Scene box_with_hole(double edge) {
   return scene;
 }
 
-// Edge of the hole, m; length of a unit; turned or not.
+// Edge of the hole in m; length of a unit; turned or not.
 class SunThroughASmallHole : public testing::TestWithParam<std::tuple<double, double, bool>> {};
 
 TEST_P(SunThroughASmallHole, IsTheFluxThatEnters) {
-  // Flux = irradiance x area of the hole x cosine, up to rounding, whatever the seed: shadows are found by geometry.
-  // Of rays that start at the patches hardly one meets a hole of 2 cm.
+  // Flux = irradiance x area of the hole x cosine, up to rounding, for any seed: shadows are computed by geometry. Rays
+  // from the patches would rarely hit a hole of 2 cm.
   const auto [edge, unit, turned] = GetParam();
   Eigen::Affine3d motion = Eigen::Affine3d::Identity();
   if (turned) motion.rotate(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));

@@ -1,4 +1,4 @@
-// Thin things: gaps, boxes and slivers of 1e-4 to 1e-6 of their size, and the bounds that no form factor may pass.
+// Thin gaps, boxes and slivers of 1e-4 to 1e-6 of their size, and the upper bounds of form factors.
 #include "patchlight/transport/assemble.h"
 
 #include "mesh/mesher.h"
@@ -33,7 +33,7 @@ Assembled assembled(const Scene& scene, double max_edge, const AssemblyOptions& 
   return {std::move(mesh), std::move(S), std::move(sums)};
 }
 
-// Rotations for which no coordinate is round, and none.
+// The identity, and rotations after which no coordinate is round.
 std::vector<Eigen::Affine3d> turns(int count) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
@@ -53,9 +53,9 @@ Scene two_squares(double gap) {
   return with_quad(with_quad(empty_scene({grey(0.5)}), low), high);
 }
 
-// Opposed squares of edge h with a gap g lose what leaves through the gap: along an edge of two long strips 1 - F = g /
-// h (crossed strings), and there are two pairs of edges: 1 - F = 2 g / h + O((g / h)^2 ln). Patches of edge h at the
-// middle lose nothing, so rows lie in between.
+// Opposed squares of edge h with a gap g lose light through the gap. Along an edge of two long strips 1 - F = g / h
+// (crossed strings), and there are two pairs of edges: 1 - F = 2 g / h + O((g / h)^2 ln). Patches of edge h in the
+// middle lose nothing, so row sums lie in between.
 TEST(ThinGap, SquaresSeeEachOtherBarTheGap) {
   for (const double gap : {1e-3, 1e-4, 1e-6}) {
     for (const Eigen::Affine3d& motion : turns(5)) {
@@ -72,8 +72,8 @@ TEST(ThinGap, SquaresSeeEachOtherBarTheGap) {
   }
 }
 
-// A closed box of this height: its rows add up to 1, those of the plates within 1e-4, and no row exceeds 1.001. Its
-// walls are slivers of aspect 1 / height; their own rows hold up to 1e5, as the slivers' below.
+// A closed box of small height: its row sums are 1, those of the plates within 1e-4, and none exceeds 1.001. Its walls
+// are slivers of aspect 1 / height, whose own rows hold up to an aspect of 1e5, as below.
 TEST(ThinGap, NoRowOfAThinBoxExceedsOne) {
   for (const double height : {1e-3, 1e-4, 1e-5, 1e-6}) {
     const Scene box = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 1, height), true);
@@ -94,8 +94,8 @@ TEST(ThinGap, NoRowOfAThinBoxExceedsOne) {
   }
 }
 
-// A unit cube whose floor is cut so that one piece is a sliver: a strip along a wall, a strip in the middle, a triangle
-// on a wall.
+// A unit cube whose floor is cut so that one piece is a sliver: a strip along a wall, a strip in the middle, or a
+// triangle at a wall.
 std::vector<Scene> rooms_with_sliver(double width) {
   Scene cube = cube_room(0.5, 1);
   cube.polygons.erase(cube.polygons.begin());
@@ -110,8 +110,8 @@ std::vector<Scene> rooms_with_sliver(double width) {
   return {at_wall, inside, triangle};
 }
 
-// The contour integral of a sliver next to a wall has an absolute error of 3e-9 of the room's area: aspect 1e5 is as
-// far as that is within 1e-3 of the sliver's own.
+// The contour integral of a sliver at a wall has an absolute error of 3e-9 of the room's area. Up to an aspect of 1e5
+// this is within 1e-3 of the sliver's area.
 TEST(Slivers, RowsOfARoomAddUpToOne) {
   for (const double width : {1e-2, 1e-4, 1e-5}) {
     for (const Scene& room : rooms_with_sliver(width)) {
@@ -126,8 +126,8 @@ TEST(Slivers, RowsOfARoomAddUpToOne) {
   }
 }
 
-// Aspect 1e6, thinner ones are left out by repair, and with a box that hides some: still finite, and no row is off by
-// more than a pair's sampling error of a few per cent, the sliver's no more than others.
+// Aspect 1e6, since repair removes thinner ones, with a box that hides some patches. All values are finite, and no row
+// sum is off by more than a pair's sampling error of a few percent.
 TEST(Slivers, AreFiniteAndBoundedBesideABox) {
   for (const double width : {1e-4, 1e-6}) {
     for (const Scene& room : rooms_with_sliver(width)) {
@@ -141,8 +141,8 @@ TEST(Slivers, AreFiniteAndBoundedBesideABox) {
   }
 }
 
-// Strips wider than vertices are welded stay as they are, whichever way they are turned; those narrower are left out as
-// having no area, never as crossing themselves.
+// Strips wider than the welding distance stay as they are in any orientation. Narrower ones are removed because they
+// have no area, never because they cross themselves.
 TEST(Slivers, AreKeptOrLeftOutByTheirWidthAlone) {
   for (const double width : {1e-4, 1e-5, 3e-6, 2e-6, 5e-7}) {
     for (const Scene& room : rooms_with_sliver(width)) {
@@ -159,8 +159,8 @@ TEST(Slivers, AreKeptOrLeftOutByTheirWidthAlone) {
   }
 }
 
-// A_i F_ij <= min(A_i, A_j), as neither F_ij nor F_ji exceeds 1: closed forms of touching patches to their 1e-6 of the
-// larger patch's area, samples never beyond the unoccluded value.
+// A_i F_ij <= min(A_i, A_j), as neither F_ij nor F_ji exceeds 1. Closed forms of touching patches meet it to 1e-6 of
+// the larger patch's area; samples never exceed the unoccluded value.
 TEST(Bounds, NoExchangeAreaExceedsTheSmallerPatch) {
   std::vector<Scene> scenes{furnished_room(0.5), two_squares(1e-3), two_squares(1e-6)};
   for (const double width : {1e-2, 1e-4, 1e-5}) {

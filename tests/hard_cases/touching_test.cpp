@@ -1,4 +1,4 @@
-// Patches that touch: form factors next to a shared edge or vertex, and lengths that are no more than rounding.
+// Patches that touch: form factors at a shared edge or vertex, and lengths at the level of rounding.
 #include "patchlight/simulate.h"
 
 #include "form_factor/pair_samples.h"
@@ -24,9 +24,9 @@ using std::numbers::pi;
 
 constexpr double degree = pi / 180;
 
-// Form factor from one square to another of the same edge, hinged at an edge of relative length c = 1 with both widths
-// A = B = `width`, opened by `angle`. Feingold 1966, Howell's catalogue C-16 with A = B; the integral that is left in
-// it is over a function without singularity: 30 Gauss points are exact to rounding for the angles used here.
+// Form factor between two equal rectangles with a common edge of relative length c = 1, widths A = B = `width`, and
+// `angle` between them. Source: Feingold 1966, Howell's catalog C-16 with A = B. The remaining integral has no
+// singularity; 30 Gauss points are exact to rounding for the angles used here.
 double hinged_form_factor(double width, double angle) {
   const double A = width;
   const double s = std::sin(angle);
@@ -52,7 +52,7 @@ double hinged_form_factor(double width, double angle) {
 const Quad unit_square{Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)};
 
 // A unit square over y from `from` to from + 1, hinged to the y axis and opened by `angle` from the plane of the unit
-// square; its front looks at that.
+// square, which its front faces.
 Quad hinged(double angle, double from) {
   const Vector along(std::cos(angle), 0, std::sin(angle));
   const Point near(0, from, 0);
@@ -62,7 +62,7 @@ Quad hinged(double angle, double from) {
 
 class Hinge : public testing::TestWithParam<double> {};
 
-// 1e-6 is what is promised for touching patches; 6e-8 of it is taken by storage in single precision.
+// The limit for touching patches is 1e-6; storage in single precision uses 6e-8 of it.
 TEST_P(Hinge, SquaresSharingAnEdge) {
   const double exact = hinged_form_factor(1, GetParam() * degree);
   const Quad wall = hinged(GetParam() * degree, 0);
@@ -74,8 +74,9 @@ TEST_P(Hinge, SquaresSharingAnEdge) {
   EXPECT_NEAR(static_cast<double>(S.at(0, 1)), exact, 1e-6);
 }
 
-// Two such squares side by side see two others as one pair of twice the width, 2 S(edge) + 2 S(vertex): the closed form
-// of the strip, twice that of width 1/2 by similarity, gives that of the squares which share a vertex only.
+// Two such squares side by side and the two opposite ones form a pair of twice the width: 2 S(edge) + 2 S(vertex). The
+// closed form of this strip is twice that of width 1/2, by similarity. The difference gives the squares that share only
+// a vertex.
 TEST_P(Hinge, SquaresSharingAVertex) {
   const double angle = GetParam() * degree;
   const double exact = hinged_form_factor(0.5, angle) - hinged_form_factor(1, angle);
@@ -88,13 +89,13 @@ TEST_P(Hinge, SquaresSharingAVertex) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Hinge, testing::Values(150.0, 90.0, 60.0, 20.0, 5.0, 1.0));
 
-// The catalogue's value for 90 degrees, to 16 digits: the formula above is the one meant.
+// The catalog's value for 90 degrees to 16 digits confirms the formula above.
 TEST(Hinge, TheClosedFormIsTheCataloguesAtNinetyDegrees) {
   EXPECT_NEAR(hinged_form_factor(1, pi / 2), 0.20004377607540316, 1e-15);
 }
 
-// Corners, edges and points 1e-15 m apart, where products of differences vanish or underflow: everything stays finite,
-// and a form factor in [0, 1] up to the rounding of some ten operations.
+// Corners, edges and points 1e-15 m apart, where products of differences vanish or underflow. All results are finite,
+// and form factors lie in [0, 1] up to the rounding of about ten operations.
 TEST(NearlyEqualPoints, GiveFiniteFormFactors) {
   const double tiny = 1e-15;
   const Quad shifted{Point(tiny, 0, tiny), Point(0, 1, tiny), Point(1, 1, tiny), Point(1, 0, tiny)};
@@ -125,8 +126,8 @@ TEST(NearlyEqualPoints, GiveFiniteFormFactors) {
   EXPECT_EQ(geometry_term(Point::Zero(), Vector::UnitZ(), Point::Zero(), -Vector::UnitZ()), 0);
 }
 
-// A room with a patch whose corners are 1e-15 m apart: left out by repair, and no other patch notices. Corners of
-// neighbours that differ by 1e-15 m are one.
+// A room with a patch whose corners are 1e-15 m apart: repair removes it, and no other patch changes. Corners of
+// neighbors that differ by 1e-15 m count as one.
 TEST(NearlyEqualPoints, OfAModelChangeNothing) {
   const Scene sound = furnished_room(0.6);
   Scene scene = sound;
@@ -138,7 +139,7 @@ TEST(NearlyEqualPoints, OfAModelChangeNothing) {
   const Simulation simulation = simulate(repair(scene), request);
   ASSERT_EQ(simulation.mesh.size(), expected.mesh.size());
   ASSERT_TRUE(simulation.solution.radiosity.allFinite());
-  // 1e-15 m in rooms of 4 m: below the rounding of exchange areas to single precision.
+  // In rooms of 4 m, 1e-15 m is below the rounding of exchange areas in single precision.
   const double change = (simulation.solution.irradiance - expected.solution.irradiance).abs().maxCoeff();
   EXPECT_LT(change, 1e-6 * expected.solution.irradiance.maxCoeff());
 }

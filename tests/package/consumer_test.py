@@ -1,4 +1,4 @@
-"""Projects of a few lines find the installed library and build with it: one solves the furnace cube, the other takes the
+"""Small projects find the installed library and build with it. One solves the furnace cube, the other uses the
 core alone, which needs nothing that reads or writes files.
 
 usage: consumer_test.py BUILD_FOLDER VERSION CMAKE COMPILER
@@ -17,7 +17,7 @@ def run(*words):
 
 
 def linked(program, libraries):
-    """Those of the libraries that the program loads, itself or by another one."""
+    """The given libraries that the program loads, directly or indirectly."""
     loaded = subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout
     return {name for name in libraries if f"lib{name}" in loaded}
 
@@ -39,20 +39,20 @@ def main(build, version, cmake, compiler):
         run(folder / "consumer" / "own_solver", MODEL)
         assert (folder / "cube.ply").read_bytes().startswith(b"ply\n")
 
-        # The values of the interface are freed by either side, whatever instructions each side is compiled for.
+        # Each side can free the other's values, whatever instructions each side is compiled for.
         build_project("consumer", "native", "-O2 -march=native")
         run(folder / "native" / "consumer", MODEL, folder / "native.ply")
         run(folder / "native" / "own_solver", MODEL)
         assert (folder / "native.ply").read_bytes() == (folder / "cube.ply").read_bytes()
 
-        # Of what the whole library is linked with, the core has what meshes and rays need.
+        # The core is linked only with the libraries for meshes and rays.
         core = folder / "consumer_of_core" / "consumer_of_core"
         run(core)
         of_files = {"vtk", "cairo", "assimp", "tinygltf", "stb", "crypto"}
         assert linked(folder / "consumer" / "consumer", of_files | {"embree"}) == of_files | {"embree"}
         assert linked(core, of_files | {"embree"}) == {"embree"}, linked(core, of_files)
 
-        # What is installed is the tool, its manual and every public header, and it is moved as a whole.
+        # The installation has the tool, its manual and every public header, and can be moved as a whole.
         shown = subprocess.run([installed / "bin" / "patchlight", "--version"], check=True, capture_output=True, text=True)
         assert shown.stdout == f"patchlight {version}\n", shown.stdout
         for manual in ("patchlight.1.gz", "patchlight-solve.1.gz"):

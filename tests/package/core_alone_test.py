@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 OF_CORE = {"Eigen3", "embree", "OpenMesh", "GEOS", "TBB", "Boost"}
 OF_FILES = """tinyobjloader assimp TinyGLTF tomlplusplus nlohmann_json pugixml draco meshoptimizer OpenSSL ZLIB PkgConfig
 OpenEXR VTK CLI11 pybind11 GTest""".split()
-# Of those that include what is not of the standard library, the ones that compile fastest.
+# The fastest to compile of the files that include more than the standard library.
 FILES = ("src/base/parallel.cpp", "src/mesh/noded_lines.cpp")
 
 
@@ -31,7 +31,7 @@ def main(_build, _version, cmake, compiler):
             assert other not in targets, other
         run("ninja", "-C", folder, *(f"src/CMakeFiles/patchlight_core.dir/{file.removeprefix('src/')}.o" for file in FILES))
 
-        # Who links the installed core looks for the same packages.
+        # The installed core's CMake configuration finds the same packages.
         found = {line.split("(")[1].split()[0].rstrip(")") for line in (folder / "patchlightConfig.cmake").read_text().splitlines()
                  if line.startswith("find_dependency(")}
         assert found == OF_CORE, found

@@ -1,4 +1,4 @@
-"""The Debian packages: they name what they need, and unpacked elsewhere they work.
+"""The Debian packages name their dependencies and work when unpacked elsewhere.
 
 usage: debian_test.py BUILD_FOLDER VERSION CMAKE COMPILER
 """
@@ -17,7 +17,7 @@ def output(*words, **options):
 
 
 def dependencies(deb):
-    """The names of the packages needed; of alternatives the first."""
+    """The names of the required packages; the first of alternatives."""
     return [re.match(r"[^ (|]+", entry)[0] for entry in output("dpkg-deb", "-f", deb, "Depends").strip().split(", ") if entry]
 
 
@@ -28,7 +28,7 @@ def installed(package):
 
 
 def faults(debs):
-    """What lintian, Debian's own check, finds, where it is there; but for the address, as the project has none."""
+    """Faults found by lintian, Debian's own check, if installed, except for the missing address of the project."""
     if shutil.which("lintian") is None:
         return []
     found = subprocess.run(["lintian", "--allow-root", *map(str, debs)], capture_output=True, text=True, check=False)
@@ -52,7 +52,7 @@ def main(build, version, cmake, _compiler):
                 assert installed(package), f"{deb.name} needs {package}, which patchlight was not built with"
             output("dpkg-deb", "-x", deb, folder / "root")
 
-        # The tool needs libraries, the library what it was built with.
+        # The tool needs libraries; the library needs the packages that it was built with.
         needed = dependencies(debs["patchlight"])
         for package in ("libembree3-3", "libtbb12", "libvtk9.1", "libc6", "libstdc++6"):
             assert package in needed, f"patchlight does not depend on {package}: {needed}"
@@ -64,7 +64,7 @@ def main(build, version, cmake, _compiler):
 
         usr = folder / "root" / "usr"
         if "python3-patchlight" in debs:
-            # Isolated from what is there besides: -I leaves PYTHONPATH and the folder of the script out.
+            # Isolated from other installations: -I ignores PYTHONPATH and the folder of the script.
             packages = usr / "lib" / "python3" / "dist-packages"
             text = (f"import sys; sys.path.insert(0, {str(packages)!r}); import patchlight as pl; "
                     f"print(pl.__file__, pl.solve({str(ROOT / 'meshes/furnace_cube.obj')!r}, patches=60).size)")

@@ -1,4 +1,4 @@
-"""The tool is built with what stops a damaged file from taking over the process.
+"""The tool is built with hardening against damaged files that try to take over the process.
 
 usage: hardening_test.py TOOL
 """

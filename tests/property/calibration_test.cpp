@@ -1,4 +1,4 @@
-// The errors that are stated for sampled exchange areas are those that they have.
+// The stated errors of sampled exchange areas match their true errors.
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-// A room with rows of boxes: many pairs see each other in part.
+// A room with rows of boxes, in which many pairs are partly hidden from each other.
 Scene cluttered_room() {
   Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   for (int k = 0; k < 6; ++k) {
@@ -26,7 +26,7 @@ Scene cluttered_room() {
   return scene;
 }
 
-// Every sampled pair against a reference of 25 times the samples, whose own error is a fifth or less.
+// Compares every sampled pair with a reference of 25 times the samples, whose error is at most a fifth.
 class Calibration : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -45,7 +45,7 @@ class Calibration : public testing::Test {
   static double error(PatchIndex i, PatchIndex j) { return entry(i, j) - reference->exchange_areas.at(i, j); }
   static double unoccluded(PatchIndex i, PatchIndex j) { return unoccluded_exchange_area(shapes[i], shapes[j]); }
 
-  // Calls use(i, j) for the pairs that were found in this way.
+  // Calls use(i, j) for the pairs whose entries are of this kind.
   template <typename Use>
   static void for_pairs(EntryKind kind, Use use) {
     for (PatchIndex j = 0; j < shapes.size(); ++j) {
@@ -70,15 +70,15 @@ TEST_F(Calibration, StandardErrorsOfPartlyVisiblePairsHold) {
     squares += z * z;
   });
   ASSERT_GT(pairs, 2000);
-  // Errors are not quite normal, and those of pairs with few blocked rays are estimated from other pairs.
+  // Errors are not exactly normal. For pairs with few blocked rays, the stated error comes from other pairs.
   EXPECT_GT(within / pairs, 0.90);
   EXPECT_LT(within / pairs, 0.99);
   EXPECT_GT(std::sqrt(squares / pairs), 0.8);
   EXPECT_LT(std::sqrt(squares / pairs), 1.25);
 }
 
-// They are the unoccluded value times the audit's error at the visible share and effort. The share's bin and the effort
-// can be the next ones, as U is right to 6 %; the result is right to 12 %.
+// The stated error is the unoccluded value times the audit's error for the visible fraction and the effort. U is known
+// to 6 %, which may select an adjacent bin or effort. The result is right to 12 %.
 TEST_F(Calibration, StandardErrorsAreThoseOfTheAudit) {
   for_pairs(EntryKind::estimated, [&](PatchIndex i, PatchIndex j) {
     const double U = unoccluded(i, j);
@@ -113,8 +113,8 @@ TEST_F(Calibration, BoundsOfUnanimousPairsHold) {
   }
 }
 
-// Nor has what they miss one sign everywhere: over all sampled pairs, those whose rays agree among them, errors are as
-// large as stated and cancel in the sum. In metres^2 of the whole room's exchange.
+// The errors have no common sign: over all sampled pairs, including those whose rays agree, they are as large as stated
+// and cancel in the sum. The unit is m^2, of the exchange in the whole room.
 TEST_F(Calibration, ErrorsOfAllSampledPairsCancelAsStated) {
   double sum = 0;
   double variance = 0;
@@ -134,9 +134,9 @@ TEST_F(Calibration, ErrorsOfAllSampledPairsCancelAsStated) {
   EXPECT_LT(std::abs(sum), 3 * std::sqrt(variance));
 }
 
-// Rays that agree do miss something, and the audit sees how often: a reference with many more finds the same rate,
-// within three standard errors of the audit's count. It counts what as many rays as the audit's have an even chance to
-// find, so that the audit may only find fewer.
+// Rays that agree miss small parts, and the audit estimates how often. A reference with many more rays finds the same
+// rate, within three standard errors of the audit's count. It counts parts that the audit's rays find with an even
+// chance, so the audit may find fewer but not more.
 TEST_F(Calibration, TheAuditFindsWhatRaysMiss) {
   double pairs = 0;
   double missed = 0;

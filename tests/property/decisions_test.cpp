@@ -1,4 +1,4 @@
-// What is decided about a scene holds on each of its meshes.
+// Decisions about a scene hold on each of its meshes.
 #include "patchlight/simulate.h"
 
 #include "support/effect_scenes.h"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-// What is known of a mesh before closure.
+// Facts about a mesh before closure.
 struct LookedAt {
   std::size_t shadow_rays = 0;
   bool direct_light = false;
@@ -48,7 +48,7 @@ TEST(Decisions, HoldOnEveryMeshOnTheWayToAnAccuracy) {
   }
 }
 
-// Error bars take a matrix also where the rows of the lamps would be enough.
+// Error bars need the matrix even if the rows of the lamps would suffice for the light.
 TEST(Decisions, BlackRoomsHaveErrorBars) {
   Request request = coarse();
   request.accuracy.error_bars = true;

@@ -1,5 +1,5 @@
-// What the planner leaves out changes nothing beyond the asked error, and what it simulates does: each effect with and
-// without it, on a scene made for it.
+// Effects that the planner leaves out change the result by less than the requested error, and effects that it simulates
+// matter. Each effect is tested with and without simulation, in a scene made for it.
 #include "patchlight/simulate.h"
 
 #include "light/photometry.h"
@@ -17,14 +17,14 @@ namespace {
 
 using namespace test;
 
-// The solver's relative error is 1e-6; two solutions may be twice that apart, in the norm of the reflected light.
+// The solver's relative error is 1e-6; two solutions may differ by twice that, in the norm of the reflected light.
 constexpr double solver_error = 2e-6;
 
-// What closed forms and quadrature promise of a pair without shadow rays (docs/benchmarks/form-factors.md) is 1e-3; a
-// tenth more for sampled pairs, whose errors are of both signs and average out over a row.
+// The error of closed forms and quadrature for a pair without shadow rays is 1e-3 (docs/benchmarks/form-factors.md).
+// Sampled pairs add a tenth, since their errors have both signs and average out over a row.
 constexpr double form_factor_error = 1.1e-3;
 
-// By so much an effect that matters has to differ for its test to be able to fail.
+// The least difference that an effect must make for its test to be meaningful.
 constexpr double clear_difference = 0.02;
 
 // ||H_a - H_b||_A / ||H_b||_A, worst band.
@@ -34,7 +34,7 @@ double difference(const Simulation& a, const Simulation& b) {
   return (area_norm(apart, b.problem.area) / area_norm(H, b.problem.area)).maxCoeff();
 }
 
-// The effect is left out by the planner, and by force it is simulated: so far are the two apart.
+// The difference between the planned run, which leaves the effect out, and a run with the effect enabled.
 double planned_difference(const Scene& scene, Effect effect, const Request& request) {
   const Simulation planned = simulate(scene, request);
   const Simulation forced = simulate(scene, forcing(effect, request));
@@ -45,9 +45,9 @@ double planned_difference(const Scene& scene, Effect effect, const Request& requ
   return difference(planned, forced);
 }
 
-// The effect is simulated by the planner, and by force it is skipped.
+// The difference between the planned run, which simulates the effect, and a run with the effect disabled.
 double skipped_difference(const Scene& scene, Effect effect, Request request) {
-  request.mesh.contact_lines = false;  // the same patches, whichever lights throw shadows
+  request.mesh.contact_lines = false;  // so that the patches do not depend on the lights
   const Simulation planned = simulate(scene, request);
   const Simulation skipped = simulate(scene, skipping(effect, request));
   EXPECT_TRUE(decision(planned, effect).simulate);
@@ -56,7 +56,7 @@ double skipped_difference(const Scene& scene, Effect effect, Request request) {
   return difference(skipped, planned);
 }
 
-// With shadow rays that find nothing entries are the same but for rounding to float, 6e-8 of each.
+// With shadow rays that hit nothing, entries differ only by rounding to float, 6e-8 each.
 TEST(Occlusion, IsNotNeededInAnEmptyRoom) {
   EXPECT_LT(planned_difference(lit_box(0.5), Effect::occlusion, coarse()), solver_error + 1e-7);
 }
@@ -65,7 +65,7 @@ TEST(Occlusion, MattersInAFurnishedRoom) {
   EXPECT_GT(skipped_difference(furnished_room(0.5), Effect::occlusion, coarse()), clear_difference);
 }
 
-// The rows of the lamps have the bits of the matrix: sums of some hundred terms in another order.
+// The rows of the lamps have the same bits as the matrix; sums of about a hundred terms have another order.
 TEST(Interreflection, IsNotNeededWhereNothingReflects) {
   Request raw = coarse();
   raw.assembly.close = false;
@@ -76,7 +76,7 @@ TEST(Interreflection, MattersWhereSomethingReflects) {
   EXPECT_GT(skipped_difference(furnished_room(0.5), Effect::interreflection, coarse()), clear_difference);
 }
 
-// H = F E and B = E + rho o H, with nothing reflected twice: the sum of the first two terms of the Neumann series.
+// H = F E and B = E + rho o H without second reflections: the first two terms of the Neumann series.
 TEST(Interreflection, SkippedLeavesTheLightOfTheLamps) {
   const Simulation whole = simulate(furnished_room(0.5), coarse());
   Request request = skipping(Effect::interreflection, coarse());
@@ -130,9 +130,9 @@ Request automatic(double max_edge = 0.4) {
   return request;
 }
 
-// The dark patches neither send nor block, but with them other pairs take rays, whose errors then differ. So far apart
-// are two solutions with other random points, and half as much again, as that is the root mean square of some hundred
-// patches.
+// Dark patches neither emit nor block, but with them other pairs are sampled with rays, whose errors differ. The limit
+// is the difference between two solutions with other random points. It is raised by half, as it is a root mean square
+// over about a hundred patches.
 double noise(const Scene& scene) {
   Request other = automatic();
   other.assembly.seed = 2;
@@ -155,7 +155,7 @@ TEST(Reach, RoomsWithoutLightNeedNoPatches) {
   EXPECT_EQ(forced.solution.irradiance.middleRows(dark.begin, dark.end - dark.begin).abs().maxCoeff(), 0);
 }
 
-// With a lamp in the second room its sides are kept; without them its light would be lost.
+// A lamp in the second room keeps its sides; without them, the lamp's light would be lost.
 TEST(Reach, MattersWhereALampIs) {
   Scene scene = two_rooms(0.5);
   Request left_out = automatic();
@@ -182,7 +182,7 @@ TEST(Backs, SidesInTheDarkNeedNoPatches) {
   EXPECT_LT(std::sqrt((H - H_forced).square().sum() / H_forced.square().sum()), noise(scene));
 }
 
-// A second lamp outside shines on the outer sides, and from there on a wall that stands beside the room.
+// A second lamp outside lights the outer sides, and by reflection a wall beside the room.
 TEST(Backs, MatterWhereALampShinesOnThem) {
   Scene scene = furnished_room(0.5);
   scene = with_quad(std::move(scene), {Point(-2, 0, 0), Point(-2, 3, 0), Point(-2, 3, 2.5), Point(-2, 0, 2.5)}, 0);
@@ -203,8 +203,8 @@ TEST(Luminaires, MatterWhereTheyAre) {
       clear_difference);
 }
 
-// A closed room whose inner sides are kept: rays towards sun and sky end at its walls. Edges are tight to 1e-7 of the
-// extent; sky rays that slip through would be some of 1,024 per patch.
+// A closed room whose inner sides are kept: rays toward sun and sky end at its walls. Edges are tight to 1e-7 of the
+// extent, so a few of 1,024 sky rays per patch may leak.
 TEST(Daylight, IsNotNeededInAClosedRoom) {
   const Scene scene = with_daylight(furnished_room(0.5));
   EXPECT_LT(planned_difference(scene, Effect::sun, coarse()), solver_error);
@@ -228,13 +228,12 @@ TEST(Daylight, MattersThroughAHole) {
   EXPECT_GT(skipped_difference(scene, Effect::sky, coarse()), clear_difference);
 }
 
-// Where nothing is reflected twice closure moves irradiance by the form factors' own error.
+// Without second reflections, closure moves irradiance by the error of the form factors.
 TEST(Closure, IsNotNeededWithoutInterreflection) {
   EXPECT_LT(planned_difference(lit_box(0), Effect::closure, coarse()), form_factor_error);
 }
 
-// In a closed room no light gets lost. Where much is reflected the errors of row sums are met again and again, up to
-// 1 / (1 - rho) times.
+// A closed room loses no light. With many reflections, errors of row sums are amplified up to 1 / (1 - rho) times.
 TEST(Closure, MattersWithInterreflection) {
   Request few = automatic();
   few.assembly.samples = 4;
@@ -250,7 +249,7 @@ TEST(Closure, MattersWithInterreflection) {
   EXPECT_GT(lost(raw), 100 * solver_error);
 }
 
-// The furnished room in linear RGB, its lamp like a black body of 2700 K, or white.
+// The furnished room in linear RGB with a white lamp or one like a black body of 2700 K.
 Scene room_with_walls(const Spectrum& walls, bool is_warm) {
   Scene scene = furnished_room(0.5);
   scene.materials = {{"wall", walls, Spectrum::Zero(3)}, {"lamp", Spectrum::Zero(3), Spectrum::Constant(3, 10)}};
@@ -258,7 +257,7 @@ Scene room_with_walls(const Spectrum& walls, bool is_warm) {
   return scene;
 }
 
-// ||XYZ_a - XYZ_b||_A / ||XYZ_b||_A of what is sent out, of the worst of X, Y and Z.
+// ||XYZ_a - XYZ_b||_A / ||XYZ_b||_A of the radiosity, for the worst of X, Y and Z.
 double colour_difference_of(const Scene& a, const Scene& b) {
   const Simulation one = simulate(a, coarse()), other = simulate(b, coarse());
   const Field xyz = xyz_rows(other.solution.radiosity, bands_of(b));
@@ -273,7 +272,7 @@ TEST(Spectra, BandsThatNothingTellsApartAreNotNeeded) {
   EXPECT_LT(colour_difference_of(joined, all), solver_error);
 }
 
-// White light is D65 in bands of wavelengths, so that a grey scene is the same as in linear RGB.
+// White is D65 in bands of wavelengths, so a gray scene has the same result as in linear RGB.
 TEST(Spectra, AreNotNeededInAGreyScene) {
   const Scene grey_room = room_with_walls(rgb(0.5, 0.5, 0.5), false);
   EXPECT_LT(colour_difference_of(in_wavelength_bands(grey_room, equal_edges(16)), grey_room),

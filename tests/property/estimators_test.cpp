@@ -1,4 +1,4 @@
-// The estimators agree, and the short cuts of the automatic one change no more than they may.
+// The estimators agree, and the shortcuts of the automatic estimator change no more than their limits allow.
 #include "patchlight/transport/assemble.h"
 
 #include "form_factor/patch_shape.h"
@@ -26,7 +26,7 @@ std::string name(const testing::TestParamInfo<Estimator>& info) {
   return text;
 }
 
-// The mean over many seeds of exchange areas between polygons, and the standard error of that mean.
+// The mean exchange areas between polygons over many seeds, and their standard errors.
 struct Mean {
   Eigen::ArrayXXd value;
   Eigen::ArrayXXd error;
@@ -56,7 +56,7 @@ TEST_P(Estimators, AreRightWhereNothingIsInBetween) {
   scene = with_quad(std::move(scene), {Point(0, 0, 1), Point(0, 1, 1), Point(1, 1, 1), Point(1, 0, 1)});
   const PatchMesh mesh = fronts(scene, 2);
   const Mean mean = mean_over_seeds(mesh, Occluder(scene), {.estimator = GetParam()}, 64);
-  // Four standard errors; what is computed in closed form has none, and is stored as a float.
+  // Four standard errors. Closed forms have no sampling error, but are stored as floats.
   EXPECT_NEAR(mean.value(0, 1), 0.199824896, 4 * mean.error(0, 1) + 1e-7);
   EXPECT_LT(mean.error(0, 1), 0.01) << "too wide to tell anything";
 }
@@ -68,15 +68,14 @@ INSTANTIATE_TEST_SUITE_P(All, Estimators,
 
 class OtherEstimators : public testing::TestWithParam<Estimator> {};
 
-// A closed room with a box in it, 64 seeds, against the automatic estimator with many rays: 1e-3 of the far rule, and
-// its scatter. Each of 4 x 78 pairs of polygons is within five
-// standard errors, found from 64 values, as few values of what goes with 1 / r^2 between patches that touch lie mostly
-// below its mean and scatter less than it does. Where nothing scatters as hardly a ray
-// arrives, nine rays may be missing: all of them miss with probability exp(-9).
+// A closed room with a box, 64 seeds, against the automatic estimator with many rays. The tolerance is 1e-3, for the
+// far rule, plus five standard errors of each of the 4 x 78 pairs of polygons. These come from only 64 values: the
+// samples between touching patches follow 1 / r^2, so most lie below the mean and underestimate the scatter. If hardly
+// a ray arrives and nothing scatters, nine rays may be missing; all of them miss with a probability of exp(-9).
 TEST_P(OtherEstimators, AgreeWithTheAutomaticOne) {
   constexpr int seeds = 64;
   const bool of_patches = GetParam() == Estimator::hemisphere;
-  const int samples = of_patches ? 512 : 64;  // of a patch, or of a pair
+  const int samples = of_patches ? 512 : 64;  // per patch or per pair
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = fronts(scene, 1);
   const Occluder occluder(scene);
@@ -108,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(All, OtherEstimators,
 // The furnished room with a screen across it.
 Scene divided_room() { return with_box(furnished_room(0.5), Point(2.1, 0.2, 0.1), Point(2.2, 2.8, 2.4), false); }
 
-// It with all short cuts, and with all but some.
+// The divided room with all shortcuts, and with all but some.
 class ShortCut : public testing::Test {
  protected:
   Assembly assembled(const ShortCuts& short_cuts) const {
@@ -127,7 +126,7 @@ class ShortCut : public testing::Test {
   const Assembly all = assembled({});
 };
 
-// Rays between what one polygon hides are all blocked.
+// All rays through polygons that hide the whole pair are blocked.
 TEST_F(ShortCut, HiddenChangesNothing) {
   const Assembly without = assembled({.hidden = false});
   EXPECT_GT(all.counts.hidden_pairs, 0U);
@@ -137,8 +136,8 @@ TEST_F(ShortCut, HiddenChangesNothing) {
       [&](PatchIndex i, PatchIndex j) { EXPECT_EQ(without.exchange_areas.at(i, j), all.exchange_areas.at(i, j)); });
 }
 
-// Rays through empty shafts are all free. Of patches that cross each other's plane few samples lie where they see each
-// other, and perhaps none: the others run through solids, so that rays tell less than the shaft.
+// All rays through empty shafts are free. If patches cross each other's plane, few samples or none lie where the
+// patches see each other. The other samples run through solids, so rays are less reliable than the shaft.
 TEST_F(ShortCut, FreeChangesNothing) {
   const Assembly without = assembled({.free = false});
   EXPECT_GT(all.counts.free_pairs, 1000U);
@@ -155,9 +154,9 @@ TEST_F(ShortCut, FreeChangesNothing) {
   EXPECT_LT(changed, all.counts.free_pairs / 500);
 }
 
-// Both rules promise 1e-3 of the unoccluded value where no cosine is small, as here, of which sampling takes away a
-// part. Form factors near a step of the number of samples are left out: without the short cut the first samples guess
-// on which side they are.
+// Both rules have an error of at most 1e-3 of the unoccluded value without small cosines, as here, and sampling removes
+// a part of it. Form factors near a step in the number of samples are skipped: without the shortcut, the first samples
+// estimate the side of the step.
 TEST_F(ShortCut, FarChangesNoMoreThanBothRulesErr) {
   const Assembly without = assembled({.far = false});
   int changed = 0;

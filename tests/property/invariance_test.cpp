@@ -1,4 +1,4 @@
-// Where a model stands, how large it is, and in which order its faces come means nothing.
+// Results do not depend on position and size of a model or on the order of its faces.
 #include "patchlight/simulate.h"
 
 #include "scene/repair.h"
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-// A closed 4 x 3 x 2.5 m room; the lamp fills a hole in the ceiling, which a seam joins to the ceiling's outline.
+// A closed 4 x 3 x 2.5 m room. The lamp fills a hole in the ceiling, which a seam joins to the ceiling's outline.
 Scene room_with_ceiling_lamp() {
   Scene scene = with_box(empty_scene({grey(0.6), grey(0.3, 10)}), Point(0, 0, 0), Point(4, 3, 2.5), true);
   scene.polygons.erase(scene.polygons.begin() + 1);
@@ -24,7 +24,7 @@ Scene room_with_ceiling_lamp() {
   return with_quad(std::move(scene), lamp, 1);
 }
 
-// Polygons remember their place in `line`.
+// Stores each polygon's index in `line`.
 Scene with_lines(Scene scene) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) scene.polygons[p].line = p + 1;
   return scene;
@@ -50,8 +50,8 @@ Solved solved(const Scene& scene, double scale, std::uint64_t seed = 1) {
   return {std::move(repaired), std::move(simulation)};
 }
 
-// Root mean square over the area of the difference in irradiance, as a share of the mean irradiance. Patches are paired
-// by the lines of their polygons and their place on them.
+// Root mean square difference in irradiance over the area, relative to the mean irradiance. Patches are matched by the
+// lines of their polygons and their order on them.
 double difference(const Solved& a, const Solved& b) {
   std::vector<PolygonIndex> of_line(a.scene.polygons.size() + 1);
   for (PolygonIndex p = 0; p < b.scene.polygons.size(); ++p) of_line[b.scene.polygons[p].line] = p;
@@ -92,10 +92,10 @@ std::vector<Placing> placings() {
   return {{turned, 1}, {quarter, 1}, {far, 1}, {far * turned, 1}, {small, 1e-3}, {large, 1e3}};
 }
 
-// The random points lie in the frames of the patches, so a moved room gets the same rays. What remains is rounding: of
-// positions, 1e-10 m at 1e6 m from the origin, of exchange areas, 6e-8, and of the ends of shadow rays to single
-// precision, 6e-8 of the extent, which tips about one in a million rays at an edge. One of the 16 rays of an entry
-// shifts its patches' irradiance by up to 1e-3, the mean square over the 500 patches by less than 1e-4.
+// Random points are defined in the frames of the patches, so a moved room gets the same rays. Only rounding remains:
+// 1e-10 m for positions at 1e6 m from the origin, and 6e-8 for exchange areas. The ends of shadow rays have single
+// precision, 6e-8 of the extent, which changes about one in a million rays at an edge. One of the 16 rays of an entry
+// shifts the irradiance of its patches by up to 1e-3. The mean square over the 500 patches is less than 1e-4.
 TEST(Invariance, MotionAndScaleChangeNothing) {
   for (const Scene& scene : {room_with_ceiling_lamp(), furnished_room(0.6)}) {
     const Solved here = solved(with_lines(scene), 1);
@@ -105,8 +105,8 @@ TEST(Invariance, MotionAndScaleChangeNothing) {
   }
 }
 
-// In a convex room nothing is left to chance, so that the order of the faces only changes the order of sums and the
-// rounding of exchange areas.
+// A convex room needs no random samples, so the order of faces only changes the order of sums and the rounding of
+// exchange areas.
 TEST(Invariance, TheOrderOfFacesChangesNothingInAConvexRoom) {
   const Scene scene = with_lines(room_with_ceiling_lamp());
   const Solved here = solved(scene, 1);
@@ -114,8 +114,8 @@ TEST(Invariance, TheOrderOfFacesChangesNothingInAConvexRoom) {
   for (const unsigned seed : {1U, 2U, 3U}) expect_same(here, solved(shuffled(scene, seed), 1), 1e-6);
 }
 
-// Elsewhere another order draws other random points, as another seed does: the answers differ as little as those of two
-// seeds, within a factor of two between single draws.
+// In other rooms, another order draws other random points, as another seed does. The results differ by no more than
+// those of two seeds, within a factor of two between single draws.
 TEST(Invariance, TheOrderOfFacesChangesNoMoreThanTheSeedDoes) {
   const Scene scene = with_lines(furnished_room(0.6));
   const Solved here = solved(scene, 1);
@@ -126,7 +126,7 @@ TEST(Invariance, TheOrderOfFacesChangesNoMoreThanTheSeedDoes) {
   }
 }
 
-// However the faces are written, twice, back to back or with corners of their own, the room is the same.
+// Repeated faces, faces back to back and faces with separate corners describe the same room.
 TEST(Invariance, RedundantFacesChangeNothing) {
   const Scene scene = with_lines(room_with_ceiling_lamp());
   const Solved here = solved(scene, 1);

@@ -56,7 +56,7 @@ TEST(ExchangeAreas, AreSymmetricToTheBitAndZeroInOnePlane) {
 }
 
 TEST(ExchangeAreas, AreNeverMoreThanUnoccluded) {
-  // The same patches with the occluders of an empty scene: a single polygon that nothing can hide behind.
+  // The same patches with the occluders of an empty scene: a single polygon that hides nothing.
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
   const Scene nothing =
@@ -78,9 +78,9 @@ TEST(Closure, MakesTheRowsOfAClosedRoomExact) {
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.4);
   const Occluder occluder(scene);
   const LostShare lost = measure_lost_share(mesh, occluder, 256, 1);
-  ASSERT_FALSE(lost.closed());  // the lamp's back is a one-sided face: some rays meet it
+  ASSERT_FALSE(lost.closed());  // rays meet the lamp's back, which is one-sided
 
-  // With the lamp's back kept the room is closed.
+  // With the lamp's back kept, the room is closed.
   KeptSides sides = kept_sides(scene, Sides::front);
   sides.back[12] = 1;
   const PatchMesh closed_mesh = tessellate(scene, sides, 0.4);
@@ -111,11 +111,11 @@ TEST(Closure, LeavesTwoPlatesThatCannotBeClosedAlone) {
 TEST(Closure, DoesNotCloseAnOpenRoom) {
   const Scene scene = open_room(0.5);
   const Simulation simulation = simulate(scene, coarse());
-  // A floor patch in the middle sees at least a third of the open ceiling: its row stays far below 1.
+  // A floor patch in the middle sees at least a third of the open ceiling, so its row sum is far below 1.
   EXPECT_LT(simulation.transport.row_sum.minCoeff(), 0.7);
   const Eigen::ArrayXd seen =
       1 - simulation.transport.lost.escaped.array() - simulation.transport.lost.at_backs.array();
-  // 256 rays know a share to 0.031 at worst (binomial, stratification makes it less): three of these.
+  // 256 rays give a fraction to 0.031 at worst (binomial, less with stratification); the limit is three of these.
   EXPECT_LT((simulation.transport.row_sum.array() - seen).abs().maxCoeff(), 0.1);
 }
 
@@ -141,7 +141,7 @@ TEST(Simulate, ASeedChangesTheSamplesAndLittleElse) {
   const Field second = simulate(scene, other).solution.irradiance;
   const double rms = std::sqrt((first - second).square().mean()) / first.mean();
   EXPECT_GT(rms, 1e-6);
-  // The usual samples know a partly hidden entry to some 10 %, and such entries carry about a fifth of the light.
+  // The default samples give a partly hidden entry to about 10 %, and such entries carry about a fifth of the light.
   EXPECT_LT(rms, 0.05);
 }
 
@@ -149,19 +149,20 @@ TEST(Simulate, BalancesEnergy) {
   for (const Scene& scene : {furnished_room(0.8), open_room(0.8)}) {
     const Simulation simulation = simulate(scene, coarse());
     EXPECT_LT(simulation.balance.imbalance, 1e-6);
-    // What the form factors lose or gain beyond the measured lost shares is small.
+    // The form factors lose or gain little beyond the measured lost fractions.
     EXPECT_LT(std::abs(simulation.balance.defect[0]), 0.01 * simulation.balance.emitted[0]);
   }
 }
 
 TEST(Simulate, IsLinearInTheLamps) {
-  // Twice the exitance, twice the radiosity: scaling by 2 is exact in floating point.
+  // Twice the exitance gives twice the radiosity: scaling by 2 is exact in floating point.
   const Simulation once = simulate(furnished_room(0.6, 5), coarse());
   const Simulation twice = simulate(furnished_room(0.6, 10), coarse());
   EXPECT_TRUE(same_bits(2 * once.solution.radiosity, twice.solution.radiosity));
 }
 
-// Root mean square difference of the irradiance of two runs, relative to its mean; `order` gives the second's patches.
+// Root mean square difference in irradiance between two runs, relative to the mean; `order` maps the patches of `a` to
+// `b`.
 double difference(const Simulation& a, const Simulation& b, const std::vector<PatchIndex>& order) {
   double sum = 0;
   for (PatchIndex i = 0; i < a.mesh.size(); ++i) {
@@ -172,8 +173,8 @@ double difference(const Simulation& a, const Simulation& b, const std::vector<Pa
 }
 
 TEST(Simulate, DoesNotDependOnPositionAndScale) {
-  // The random points follow from the patches' places in a frame of the scene's own. What is left are shadow rays that
-  // graze an edge: one of the 16 rays of a single entry shifts a patch's irradiance by 1e-4 at most.
+  // Random points follow from the places of patches in the scene's own frame. Only shadow rays that graze an edge
+  // differ: one of the 16 rays of a single entry shifts a patch's irradiance by at most 1e-4.
   const Simulation here = simulate(furnished_room(0.6), coarse());
   std::vector<PatchIndex> same(here.mesh.size());
   std::iota(same.begin(), same.end(), PatchIndex{0});
@@ -207,8 +208,8 @@ class DividedRoom : public testing::TestWithParam<double> {};
 
 TEST_P(DividedRoom, StaysDarkBehindTheWall) {
   const double rise = GetParam();
-  // A closed room divided by a wall of no thickness, a lamp on one side, level or tilted: no light at all on the other.
-  // Tilted, it sees some patches in a small part only.
+  // A closed room divided by a wall without thickness, with a level or tilted lamp on one side: the other side must be
+  // exactly dark. The tilted lamp sees only a small part of some patches.
   Scene scene = with_box(empty_scene({grey(0.8), grey(0, 10)}), Point(0, 0, 0), Point(2, 1, 1), true);
   scene = with_quad(std::move(scene), {Point(1, 0, 0), Point(1, 1, 0), Point(1, 1, 1), Point(1, 0, 1)});
   scene = with_quad(std::move(scene),
@@ -219,7 +220,7 @@ TEST_P(DividedRoom, StaysDarkBehindTheWall) {
   double lit = 0;
   double dark = 0;
   for (PatchIndex i = 0; i < simulation.mesh.size(); ++i) {
-    // Edges of 0.25 m meet the wall at x = 1: no patch straddles it.
+    // Patch edges of 0.25 m end at the wall at x = 1, so no patch straddles it.
     const double flux = simulation.mesh.area[i] * simulation.solution.irradiance(i, 0);
     const bool behind =
         simulation.mesh.centroid[i].x() > 1 || (simulation.mesh.polygon[i] == 6 && simulation.mesh.normal[i].x() > 0);
@@ -232,8 +233,8 @@ TEST_P(DividedRoom, StaysDarkBehindTheWall) {
 INSTANTIATE_TEST_SUITE_P(LampRises, DividedRoom, testing::Values(0.0, 0.1, -0.1));
 
 TEST(Simulate, PatchesInsideASolidTakeNoPart) {
-  // A box without a bottom stands on the floor: the floor patches below it see its backs only. Half covered patches
-  // keep the irradiance of their exposed half.
+  // A box without a bottom stands on the floor: floor patches below it see only its backs. Half-covered patches keep
+  // the irradiance of their exposed half.
   Scene scene = with_box(empty_scene({grey(0.5), grey(0, 10)}), Point(0, 0, 0), Point(2, 2, 2), true);
   scene.polygons[1].material = 1;
   const Scene empty = scene;
@@ -251,8 +252,8 @@ TEST(Simulate, PatchesInsideASolidTakeNoPart) {
       EXPECT_NEAR(flat.transport.lost.covered[i], expected, 1e-12);
     }
   }
-  // The floor around is lit as in the empty room: the box is 1 cm high. Patch edges of 0.2 m; the box ends in their
-  // middle.
+  // The box is only 1 cm high, so the floor around it is lit as in the empty room. Patch edges are 0.2 m, and the box
+  // ends in the middle of patches.
   const Simulation without = simulate(empty, request);
   double worst = 0;
   for (PatchIndex i = 0; i < 100; ++i) {
@@ -261,7 +262,7 @@ TEST(Simulate, PatchesInsideASolidTakeNoPart) {
       worst = std::max(worst, std::abs(change));
     }
   }
-  // 32 stratified points know a half-covered share to about 1 / 32.
+  // 32 stratified points give a half-covered fraction to about 1 / 32.
   EXPECT_LT(worst, 0.1);
 }
 

@@ -1,4 +1,4 @@
-// Laws of meshes that are cut, and rays that are doubled, where few patches make most of an error.
+// Laws of local refinement and of additional rays, if few patches dominate an error.
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
@@ -18,8 +18,8 @@ namespace {
 
 using namespace test;
 
-// A room of 4 x 3 x 2.5 m under an even sky, one wall of which is half as high, and a board 4 cm above its floor, under
-// which light gets from the rims alone.
+// A room of 4 x 3 x 2.5 m under a uniform sky, one wall of which has half the height. Light reaches the space under a
+// board 4 cm above the floor only from the rims.
 Scene room_with_board() {
   Scene scene = empty_scene({grey(0.7)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -45,7 +45,7 @@ Request by_rays(bool is_cut, std::uint64_t seed = 1) {
   return request;
 }
 
-// The flux that arrives at each side of each polygon, of one band, W.
+// Flux on each side of each polygon in one band, W.
 std::vector<double> fluxes(const Simulation& s) {
   std::vector<double> flux;
   for (PatchIndex i = 0; i < s.mesh.size(); ++i) {
@@ -56,9 +56,10 @@ std::vector<double> fluxes(const Simulation& s) {
   return flux;
 }
 
-// The flux that arrives at the underside of the board, a hundredth of what the floor gets, and spread over patches that
-// are wider than the gap: against eight times the patches with four times the rays, in four seeds. A cut leaves
-// 2^-1.2 = .44 of such an error; .7 with what rays add. A quarter more patches are planned, balance aside.
+// The flux on the underside of the board is a hundredth of the floor's and is blurred over patches wider than the gap.
+// The reference has eight times the patches and four times the rays; the test sums over four seeds. A cut leaves 2^-1.2
+// = 0.44 of such an error, or 0.7 with the noise of rays. The plan adds a quarter more patches, plus those that balance
+// the mesh.
 TEST(LocalCuts, TakeAwayErrorWithFewPatches) {
   const Scene scene = room_with_board();
   constexpr std::size_t underside = 2 * 6;  // the front of the board's first face
@@ -96,8 +97,8 @@ TEST(LocalCuts, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.ray_standard_error == two.ray_standard_error).all());
 }
 
-// All flux that gets in is absorbed or leaves: rays carry it by chance, of R rays with equal parts of it 1 / sqrt(R) of
-// it, and less as they are stratified.
+// All flux that enters is absorbed or leaves. R rays that carry equal parts of the flux have a relative error of 1 /
+// sqrt(R), less with stratification.
 TEST(LocalCuts, KeepTheBalance) {
   const Simulation s = simulate(room_with_board(), by_rays(true));
   ASSERT_EQ(s.accuracy.size(), 2U);
@@ -117,8 +118,8 @@ Mean mean_of(const std::vector<double>& values) {
   return mean;
 }
 
-// Light that is kept is kept as it scattered little: that must not make the room darker. Within three standard errors
-// of the means over sixteen seeds, and these within half a per cent.
+// Light from an earlier mesh is kept if its scatter is small. This selection must not darken the room: the means over
+// sixteen seeds agree within three standard errors, and these are within half a percent.
 TEST(LocalCuts, LetInAsMuchLight) {
   const Scene scene = room_with_board();
   std::vector<double> cut;
@@ -137,7 +138,7 @@ TEST(LocalCuts, LetInAsMuchLight) {
   EXPECT_NEAR(with.value, without.value, 3 * scatter);
 }
 
-// A cube that a small lamp lights errs by less than 2 %, and its patches by parts of it that cuts would mend.
+// A cube lit by a small lamp has an error below 2 %. The part that cuts would remove is smaller still.
 TEST(LocalCuts, AreLeftOutWhereTheErrorIsSmall) {
   Request request = by_rays(true);
   request.mesh.patches = 4000;
@@ -147,7 +148,7 @@ TEST(LocalCuts, AreLeftOutWhereTheErrorIsSmall) {
   EXPECT_GT(s.accuracy[0].total, 0.005);
 }
 
-// A mesh that does not fit beside the first one is not made, and a note says so.
+// A mesh that does not fit into memory beside the first one is not computed, and a note reports it.
 TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   Request request = by_rays(true);
   const Simulation first = simulate(room_with_board(), request);
@@ -162,9 +163,9 @@ TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   EXPECT_NE(note.find("(resources.memory)"), std::string::npos) << note;
 }
 
-// An accuracy is reached by as many of them as it takes, each mesh with at most four times the patches of the one
-// before and what balance adds, a quarter; and what is stated holds for the flux under the board: within three of its
-// errors, as that is a hundredth of the light and errs more than most.
+// The solver adds meshes until it reaches an accuracy. Each mesh has at most four times the patches of the last, plus a
+// quarter for balance. The flux under the board is within three times the stated error, as it is a hundredth of the
+// light and has a larger error than most.
 TEST(LocalCuts, ReachAnAccuracy) {
   const Scene scene = room_with_board();
   constexpr std::size_t underside = 2 * 6;
@@ -185,7 +186,7 @@ TEST(LocalCuts, ReachAnAccuracy) {
   EXPECT_NEAR(fluxes(s)[underside], exact, 3 * 0.02 * exact);
 }
 
-// A run that begins by pairs goes on by rays where these no longer fit, as far as it takes.
+// A run that starts with pairs continues with rays once pairs no longer fit into memory, until it reaches the accuracy.
 TEST(LocalCuts, GoOnWherePairsNoLongerFit) {
   Request request;
   request.accuracy.relative_error = 0.02;
@@ -199,7 +200,7 @@ TEST(LocalCuts, GoOnWherePairsNoLongerFit) {
   EXPECT_GT(s.accuracy.back().samples, s.plan.assembly.rays);
 }
 
-// On the way to an accuracy they stop where memory does.
+// On the way to an accuracy, refinement stops at the memory limit.
 TEST(LocalCuts, OnTheWayToAnAccuracyKeepTheMemory) {
   Request request = by_rays(false);
   request.accuracy.relative_error = 0.002;

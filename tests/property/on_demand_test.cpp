@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-// A scene cut into patches; stays where it is made, as transports refer to it.
+// A scene cut into patches. It must not move, as transports refer to it.
 struct Place {
   explicit Place(const Scene& scene, double max_edge) : Place(scene, kept_sides(scene, Sides::both), max_edge) {}
   Place(const Place&) = delete;
@@ -58,7 +58,7 @@ Scene room_with_overlaps() {
   return with_box(std::move(scene), Point(3, 1, 0), Point(3.7, 1.6, 0.8), false);
 }
 
-// Values that differ from patch to patch, in (0, 1).
+// Values in (0, 1) that differ from patch to patch.
 Field some_radiosity(PatchIndex size, int bands) {
   Field B(size, bands);
   for (PatchIndex i = 0; i < size; ++i) {
@@ -67,7 +67,7 @@ Field some_radiosity(PatchIndex size, int bands) {
   return B;
 }
 
-// How many entries of the matrix are not the same bits in the rows, and how its entries came about.
+// The number of matrix entries whose bits differ in the rows, and the number of entries of each kind.
 struct Comparison {
   std::size_t differing = 0;
   AssemblyCounts counts;
@@ -76,7 +76,7 @@ struct Comparison {
 Comparison compare(const Place& place, const AssemblyOptions& options) {
   const Assembly assembly = assemble_exchange_areas(place.mesh, place.occluder, options);
   const PatchIndex size = place.mesh.size();
-  // With areas of 1 form factors are the exchange areas themselves.
+  // With areas of 1, form factors equal the exchange areas.
   const auto rows = on_demand_transport(place.mesh, place.occluder, options, Eigen::VectorXd::Ones(size));
   const Eigen::MatrixXd F = rows->form_factors({0, size}, {0, size});
   Comparison result{0, assembly.counts};
@@ -88,7 +88,7 @@ Comparison compare(const Place& place, const AssemblyOptions& options) {
   return result;
 }
 
-// Law: an entry follows from its two patches alone, so that a row by itself has the bits that it has in the matrix.
+// Law: an entry depends only on its two patches, so a single row has the same bits as in the matrix.
 TEST(OnDemand, RowsAreThoseOfTheMatrix) {
   const AssemblyOptions options{16, 3};
   AssemblyCounts counts;
@@ -101,7 +101,7 @@ TEST(OnDemand, RowsAreThoseOfTheMatrix) {
   expect_the_same(room_with_overlaps(), 0.8);
   expect_the_same(model("cornell_box.obj"), 0.25);
   expect_the_same(model("two_rooms.obj"), 1);
-  // Every kind of pair was among them.
+  // The scene has pairs of every kind.
   for (const auto count : {counts.near_pairs, counts.hidden_pairs, counts.free_pairs, counts.partial_pairs}) {
     EXPECT_GT(count, 100U);
   }
@@ -117,7 +117,7 @@ TEST(OnDemand, RowsAreThoseOfTheMatrixWithoutShortCuts) {
   }
 }
 
-// What is shot is summed in the same order as from a stored matrix: the same bits.
+// Shooting sums in the same order as with a stored matrix, so the bits are equal.
 TEST(OnDemand, ShootsLikeTheStoredMatrix) {
   const Place place(room_with_overlaps(), 0.5);
   const Field B = some_radiosity(place.mesh.size(), 3);
@@ -133,8 +133,8 @@ TEST(OnDemand, ShootsLikeTheStoredMatrix) {
   }
 }
 
-// What is gathered is summed in another order: with at most 2 size roundings of relative size epsilon / 2 in each of
-// the two sums, all terms positive.
+// Gathering sums in another order: each of the two sums has at most 2 size roundings of relative size epsilon / 2, and
+// all terms are positive.
 TEST(OnDemand, GathersLikeTheStoredMatrix) {
   const Place place(room_with_overlaps(), 0.5);
   const Field B = some_radiosity(place.mesh.size(), 2);
@@ -147,7 +147,7 @@ TEST(OnDemand, GathersLikeTheStoredMatrix) {
 }
 
 // Reciprocity: with S symmetric, sum_i A_i X_i (F B)_i = sum_j A_j B_j (F X)_j for all B and X. Here X is 1 at the
-// receivers, B at the sources: what these get from those is what those would get from these.
+// receivers and B is nonzero at the sources, so the exchange is equal in both directions.
 TEST(OnDemand, ShootingIsTheTransposeOfGathering) {
   const Place place(model("cornell_box.obj"), 0.2);
   const auto transport = place.on_demand();

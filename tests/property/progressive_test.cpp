@@ -1,4 +1,4 @@
-// What progressive refinement shows early, with rows on demand.
+// The early results of progressive refinement with rows on demand.
 #include "patchlight/input/read_scene.h"
 #include "patchlight/simulate.h"
 
@@ -10,28 +10,28 @@
 namespace patchlight::progressive_test {
 namespace {
 
-// ||B_ref - B||_A / ||B_ref - E||_A, the worst band.
+// ||B_ref - B||_A / ||B_ref - E||_A, worst band.
 double error_of(const Field& radiosity, const Simulation& reference) {
   const RadiosityProblem& problem = reference.problem;
   const Field& exact = reference.solution.radiosity;
   return (area_norm(exact - radiosity, problem.area) / area_norm(exact - problem.exitance, problem.area)).maxCoeff();
 }
 
-// The error that is left when irradiance that is the same everywhere is added, as much as is best.
+// The remaining error after adding the best constant irradiance.
 double least_error_with_even_light(const Field& radiosity, const Simulation& reference) {
   const RadiosityProblem& problem = reference.problem;
-  // For B + c rho the squares are least with c = <rho, B_ref - B> / <rho, rho>.
+  // For B + c rho the sum of squares is least with c = <rho, B_ref - B> / <rho, rho>.
   const Field missing = reference.solution.radiosity - radiosity;
   const Field weighted = problem.scattering.reflectance.colwise() * problem.area.array();
   const Field c = (weighted * missing).colwise().sum() / (weighted * problem.scattering.reflectance).colwise().sum();
   return error_of(radiosity + problem.scattering.reflectance.rowwise() * c.row(0), reference);
 }
 
-// A twentieth of the rows are below 20 % of error: that is what a first picture is asked for here. The Cornell box has
-// few lamps and an open side, and half of its reflected light is still under way by then: no light that is added evenly
-// gets below 20 %, so that the ambient term of Cohen et al. 1988 would fail. 2,000 patches, as with fewer the lamps
-// and one row of every group are a twentieth already. The inner sides of the blocks take part, in the dark: without
-// them patches are finer where it is light, and even light of the best amount gets to 17 %.
+// A twentieth of the rows gives an error below 20 %, enough for a first picture. The Cornell box has few lamps and an
+// open side, and half of its reflected light is unshot at that time. No constant irradiance gets the error below 20 %,
+// so the ambient term of Cohen et al. 1988 would fail. With fewer than 2,000 patches, the lamps and one row of every
+// group would already be a twentieth. The inner sides of the blocks are included although they are dark. Without them
+// the lit patches are finer, and the best constant irradiance gets to 17 %.
 TEST(ProgressiveRefinement, ShowsTheCornellBoxAfterATwentiethOfTheRows) {
   const Scene scene = read_scene(mesh_folder() / "cornell_box.obj");
   Request request;

@@ -27,7 +27,7 @@ std::vector<std::string> all_kinds() {
   return kinds;
 }
 
-// All files of a room, one after another.
+// All files of a room, concatenated.
 std::string text_of(const RandomRoom& room, const std::filesystem::path& folder) {
   const std::filesystem::path scene_file = write_random_room(room, folder);
   std::string text;
@@ -65,8 +65,8 @@ Integrals integrate(const RandomRoom& room, const std::string& group) {
   return sums;
 }
 
-// A surface is closed if its area vectors sum to zero; the divergence theorem gives its volume. Walls of a thickness
-// enclose a solid. Walls without one enclose the air, together with the panes.
+// The area vectors of a closed surface sum to zero, and the divergence theorem gives its volume. Thick walls enclose a
+// solid; walls without thickness enclose the air, together with the panes.
 TEST(RandomRooms, WallsAndPanesAreClosed) {
   for (const std::string& kind : all_kinds())
     for (std::size_t number = 0; number < 8; ++number) {

@@ -32,7 +32,7 @@ double norm(const Field& x, const Simulation& s) {
 
 Field reflected(const Simulation& s) { return s.solution.radiosity - s.problem.exitance; }
 
-// The error against another solution on the same mesh, and the bars, both relative to the light that is reflected.
+// The error against another solution on the same mesh, and the bars, both relative to the reflected light.
 struct Compared {
   double error = 0;
   double stated = 0;
@@ -48,12 +48,12 @@ Simulation by_matrix(const Scene& scene, Request request) {
   request.assembly.storage = Storage::tiles;
   request.solver.solver = Solver::cg;
   request.assembly.samples = 32;
-  request.accuracy.error_bars = true;  // the mesh is nested as that of rays
+  request.accuracy.error_bars = true;  // so that the mesh is nested as with rays
   return simulate(scene, request);
 }
 
-// In a closed room in which every patch emits 1 - rho all radiosities are 1: row sums of 1 make it so whatever rays
-// meet. What all surfaces emit alike counts as no lamp.
+// In a closed room where every patch emits 1 - rho, all radiosities are 1: row sums of 1 ensure it, whatever the rays
+// hit. A uniform exitance does not count as a lamp.
 TEST(Rays, KeepTheFurnaceEven) {
   Scene scene = cube_room(0.7, 0.3);
   scene.materials.push_back(grey(0.4, 0.6));
@@ -67,16 +67,16 @@ TEST(Rays, KeepTheFurnaceEven) {
   EXPECT_EQ(s.balance.escaped[0], 0);
 }
 
-// The emitted flux is absorbed. Rays carry it from patch to patch by chance: of R rays that carry equal parts of the
-// light about 1 / sqrt(R) of it, here 0.3 %, and less as they are stratified.
+// Surfaces absorb the emitted flux. R rays that carry equal parts of the light have a relative error of about 1 /
+// sqrt(R), here 0.3 %, and less with stratification.
 TEST(Rays, BalanceTheFlux) {
   const Simulation s = simulate(test_room(0.7), by_rays(2000));
   EXPECT_LT(s.balance.imbalance, 3e-3);
   EXPECT_GT(s.balance.absorbed[0], 0.9 * s.balance.emitted[0]);
 }
 
-// All that patches send arrives: the errors of rows do not change the level of the light, which 1 / (1 - rho) = 33
-// reflections would multiply. Root mean square of four seeds.
+// All emitted light arrives: errors of rows do not change the total, which 1 / (1 - rho) = 33 reflections would
+// amplify. Root mean square over four seeds.
 TEST(Rays, KeepTheLevelOfBrightRooms) {
   const Scene scene = test_room(0.97);
   const auto level = [](const Simulation& s) { return (reflected(s).col(0) * s.problem.area.array()).sum(); };
@@ -98,7 +98,7 @@ TEST(Rays, AreWithinTheirBarsOfTheMatrixInTheCornellBox) {
   EXPECT_LT(by.error, 1.4 * by.stated);
 }
 
-// Blocks and a slab that float stand between most of the room and its lamp.
+// Floating blocks and a slab hide the lamp from most of the room.
 TEST(Rays, AreWithinTheirBarsOfTheMatrixInARoomWithBlocks) {
   const Simulation exact = by_matrix(test_room(0.7), by_rays());
   const Compared by = compared(simulate(test_room(0.7), by_rays()), exact);
@@ -107,10 +107,10 @@ TEST(Rays, AreWithinTheirBarsOfTheMatrixInARoomWithBlocks) {
   EXPECT_LT(by.error, 1.4 * by.stated);
 }
 
-// Two squares that emit alike, in the open, each of which takes a sixteenth of the other's hemisphere: some ten of a
-// patch's rays meet it, which is as uncertain as their number is, though the halves of all rows agree, as both carry
-// the same light and are scaled to the same sums. Root mean squares of four seeds. Rays are stratified, so that the
-// error may be below that of a number of hits by chance, which is stated.
+// Two squares in the open with equal exitance, each of which fills a sixteenth of the other's hemisphere. About ten
+// rays of a patch hit the other square, and the uncertainty is that of their number. The halves of all rows agree
+// nevertheless: they carry the same light and are scaled to the same sums. The values are root mean squares over four
+// seeds. The rays are stratified, so the error may be below the stated one for independent hits.
 TEST(Rays, StateWhatSmallRowSumsErr) {
   Scene scene =
       with_quad(empty_scene({grey(0.5, 1)}), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
@@ -144,21 +144,21 @@ TEST(Rays, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.error_bars->mesh == two.error_bars->mesh).all());
 }
 
-// What the size of patches errs, relative to the light that is reflected.
+// The error by the size of patches, relative to the reflected light.
 double mesh_error(const Scene& scene, std::size_t patches) {
   const Simulation s = simulate(scene, by_rays(patches));
   return norm(s.problem.scattering.reflectance * s.error_bars->mesh, s) / norm(reflected(s), s);
 }
 
-// Above 20,000 patches two rays start at each quarter of a patch, and sixteen below: what is found with few must not be
-// their noise. Of four times the patches the error is 4^(-1.2 / 2) = .44 times as large by its order; to twice that it
-// may be raised by noise.
+// Each quarter of a patch starts two rays above 20,000 patches and sixteen below. The mesh error found with few rays
+// must not be their noise. Four times the patches reduce the error to 4^(-1.2 / 2) = 0.44 by its order; noise may raise
+// that to twice as much.
 TEST(Rays, StateLessErrorOfFinerPatchesFromFewerRays) {
   const Scene scene = read_scene({mesh_folder() / "cornell_box.obj"});
   EXPECT_LT(mesh_error(scene, 24000), 0.88 * mesh_error(scene, 6000));
 }
 
-// Twice the light is twice the radiosity; two lamps give the sum of what each gives, within the bars.
+// Twice the light gives twice the radiosity; two lamps give the sum of their results, within the bars.
 TEST(Rays, AreLinearInTheLight) {
   Scene scene = test_room(0.7);
   const Simulation one = simulate(scene, by_rays(1000));
@@ -168,7 +168,7 @@ TEST(Rays, AreLinearInTheLight) {
             1e-3 * one.solution.radiosity.maxCoeff());
 }
 
-// Where bands differ by a factor in their lamps alone, they are as if each was solved.
+// Bands that differ by a factor in their lamps only have the same results as if each was solved.
 TEST(Rays, TellBandsThatFollowFromOthers) {
   Scene scene = test_room(0.7);
   for (Material& material : scene.materials) {
@@ -184,7 +184,7 @@ TEST(Rays, TellBandsThatFollowFromOthers) {
   EXPECT_LT(differ(few.solution.direct_irradiance, each.solution.direct_irradiance), 1e-12);
   EXPECT_LT(differ(few.solution.error, each.solution.error), 1e-9);
   EXPECT_LT(differ(few.ray_standard_error, each.ray_standard_error), 1e-9);
-  // Errors of the mesh, and what of them is noise, go with the light.
+  // The mesh errors, and their noise, scale with the light.
   ASSERT_TRUE(few.error_bars);
   const auto of_first = [](const Field& field) -> Field {
     Field bands = field.col(0).replicate(1, field.cols());
@@ -197,7 +197,7 @@ TEST(Rays, TellBandsThatFollowFromOthers) {
   EXPECT_LT(differ(few.error_bars->mesh, of_first(few.error_bars->mesh)), 1e-9);
 }
 
-// The solvers that take no more than H = F B agree to their tolerance.
+// The solvers that need only H = F B agree to their tolerance.
 TEST(Rays, AreSolvedByWhatTakesTheOperatorAlone) {
   Request request = by_rays(1000);
   request.solver.relative_error = 1e-6;

@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-// Two rooms with a door in the wall of no thickness between them, a lamp in one.
+// Two rooms with a door in the wall without thickness between them, and a lamp in one.
 Scene two_small_rooms(double reflectance) {
   Scene scene = with_box(empty_scene({grey(reflectance), grey(0, 10)}), Point(0, 0, 0), Point(4, 2, 2), true);
   scene = with_polygon(std::move(scene), {Point(2, 0, 0), Point(2, 0.7, 0), Point(2, 0.7, 1.5), Point(2, 1.3, 1.5),
@@ -36,14 +36,14 @@ Scene open_room(double reflectance) {
   return scene;
 }
 
-// A room to solve, and how well.
+// A room to solve, and the accuracy.
 struct Case {
   std::string name;
   Assembled room;
   double relative_error = 1e-8;
 };
 
-// Two bands of different reflectances and lamps: neither is a copy of the other.
+// Two bands of different reflectances and lamps, so that neither is a copy of the other.
 Assembled in_two_bands(Assembled room, double second_reflectance) {
   const RadiosityProblem grey = room.problem;
   Field reflectance(grey.scattering.reflectance.rows(), 2);
@@ -55,7 +55,7 @@ Assembled in_two_bands(Assembled room, double second_reflectance) {
   return room;
 }
 
-// Some 300 patches each, as some solvers need thousands of iterations.
+// About 300 patches each, as some solvers need thousands of iterations.
 std::vector<Case> five_scenes() {
   std::vector<Case> cases;
   cases.push_back({"closed", in_two_bands(assembled(furnished_room(0.7), 0.5), 0.3)});
@@ -78,17 +78,17 @@ TEST_P(EverySolver, AgreesWithADenseSolveInFiveScenes) {
     const Field exact = direct_solution(*room.transport, room.problem);
     const Eigen::ArrayXd error = area_norm(exact - solution.radiosity, room.problem.area);
     const Eigen::ArrayXd reflected = area_norm(exact - room.problem.exitance, room.problem.area);
-    // The bound is relative to the reflected light of the iterate, which the tolerance keeps near that of the exact
-    // one. Plus rounding, of a solution of at most 10.
+    // The bound is relative to the reflected light of the iterate, which the tolerance keeps close to the exact one.
+    // The last term allows for rounding of values up to 10.
     EXPECT_TRUE((error <= (1 + 2 * relative_error) * relative_error * reflected + 1e-13).all()) << error.transpose();
-    // H = F B, also where nothing is reflected.
+    // H = F B, even if nothing is reflected.
     const Field arrived = room.transport->apply(exact);
     const Eigen::ArrayXd missing = area_norm(arrived - solution.irradiance, room.problem.area);
     EXPECT_TRUE((missing <= 3 * relative_error * area_norm(arrived, room.problem.area)).all()) << missing.transpose();
   }
 }
 
-// Law: in a closed room in which every patch emits what it absorbs, E = 1 - rho, light is the same everywhere, B = 1.
+// Law: in a closed room where every patch emits the fraction that it absorbs, E = 1 - rho, B = 1 everywhere.
 TEST_P(EverySolver, FindsTheFurnace) {
   Assembled room = assembled(furnished_room(0.5), 0.5);
   ASSERT_TRUE(room.closed);
@@ -116,15 +116,15 @@ INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver, testing::ValuesIn(all_solvers()),
   return name;
 });
 
-// A solution that stands for the exact one: five digits more than are asked of the others.
+// A reference solution with five digits more than the compared ones.
 Field reference(const Assembled& room) {
   const Solution solution = solve(*room.transport, room.problem, {.relative_error = 1e-11});
   EXPECT_TRUE(solution.converged);
   return solution.radiosity;
 }
 
-// The matrix has one eigenvalue far above all others, that of light that is the same everywhere: so the number of
-// applications hardly grows with the reflectance.
+// The largest eigenvalue, that of uniform light, is far above all others, so the number of applications hardly grows
+// with the reflectance.
 TEST(ConjugateGradients, NeedFewApplicationsForAnyReflectance) {
   Assembled room = assembled(test_room(0.5), test_room_edge);
   ASSERT_TRUE(room.closed);
@@ -132,7 +132,7 @@ TEST(ConjugateGradients, NeedFewApplicationsForAnyReflectance) {
   for (const double reflectance : {0.5, 0.8, 0.95, 0.99, 0.999}) {
     room.problem.scattering.reflectance.setConstant(reflectance);
     const Field exact = reference(room);
-    // Counted are also those for the row sums, the light of the lamps and the last residual.
+    // The count includes the applications for row sums, direct light and the final residual.
     const Solution met = solve(*room.transport, room.problem, {.relative_error = 1e-6, .reference = exact});
     ASSERT_TRUE(met.converged);
     EXPECT_LE(met.history.back().work, 18) << reflectance;
@@ -143,11 +143,12 @@ TEST(ConjugateGradients, NeedFewApplicationsForAnyReflectance) {
   }
 }
 
-// Jacobi's errors are K^k (B* - E), so that their ratio tends to the largest eigenvalue. In 60 iterations the next one,
-// some 0.7 of it, is down to 1e-9.
+// The errors of Jacobi are K^k (B* - E), so their ratio converges to the largest eigenvalue. The second one is about
+// 0.7 of it, which 60 iterations reduce to 1e-9.
 TEST(Jacobi, ConvergesAtTheSpectralRadius) {
   Assembled room = assembled(test_room(0.8), test_room_edge);
-  // The floor and what stands low is darker: the mode is not constant, its eigenvalue none of the reflectances.
+  // The floor and low surfaces are darker, so the mode is not constant, and its eigenvalue equals none of the
+  // reflectances.
   for (PatchIndex i = 0; i < room.mesh.size(); ++i) {
     if (room.mesh.centroid[i].z() < 1) room.problem.scattering.reflectance(i, 0) = 0.3;
   }
@@ -163,9 +164,9 @@ TEST(Jacobi, ConvergesAtTheSpectralRadius) {
   EXPECT_NEAR(last.true_error / before.true_error, radius, 0.02 * radius);
 }
 
-// For one mode of eigenvalue rho that is the same everywhere, in the limit of many equal patches, a sweep multiplies
-// the error by lambda with ln lambda = rho (1 - 1 / lambda): for rho = 0.8 lambda = 0.650, ln lambda / ln rho = 1.93,
-// so 0.52 of Jacobi's iterations. Starting from the lamps, neither is at its rate from the beginning.
+// For a constant mode of eigenvalue rho, in the limit of many equal patches, a sweep multiplies the error by lambda
+// with ln lambda = rho (1 - 1 / lambda). For rho = 0.8, lambda = 0.650 and ln lambda / ln rho = 1.93, so 0.52 of
+// Jacobi's iterations. The first iterations from the lamps are not yet at this rate.
 TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
   const Assembled room = assembled(test_room(0.8), test_room_edge);
   const Field exact = reference(room);
@@ -180,8 +181,8 @@ TEST(GaussSeidel, NeedsAboutHalfOfJacobisIterations) {
   EXPECT_LT(share, 0.65);
 }
 
-// docs/theory/solvers-and-bounds.md: from one factor to the next on this grid the number of iterations changes by up to
-// a third; the estimate, which lies between two of them, needs no more than one iteration above the best.
+// See docs/theory/solvers-and-bounds.md. From one factor of this grid to the next, the number of iterations changes by
+// up to a third. The estimate, which lies between two of them, needs at most one iteration more than the best.
 TEST(SuccessiveOverRelaxation, EstimatesABestFactor) {
   Assembled room = assembled(test_room(0.8), test_room_edge);
   for (const double reflectance : {0.5, 0.8, 0.95}) {
@@ -201,7 +202,7 @@ TEST(SuccessiveOverRelaxation, EstimatesABestFactor) {
   }
 }
 
-// Work to a true error of 1e-6, in applications.
+// Work to reach a true error of 1e-6, in applications.
 double work(const Assembled& room, const RadiosityProblem& problem, Solver solver) {
   const Solution exact = solve(*room.transport, problem, {.relative_error = 1e-11});
   const Solution solution =
@@ -210,8 +211,8 @@ double work(const Assembled& room, const RadiosityProblem& problem, Solver solve
   return solution.history.back().work;
 }
 
-// What is still under way is foreseen: two to five times fewer shots in a closed room with a small lamp, the more the
-// brighter its walls.
+// Overshooting anticipates unshot light. In a closed room with a small lamp it needs two to five times fewer shots, the
+// fewer the brighter the walls are.
 TEST(Overshooting, SavesMostShots) {
   Assembled room = assembled(test_room(0.5), test_room_edge);
   const auto saving = [&] {
@@ -222,8 +223,8 @@ TEST(Overshooting, SavesMostShots) {
   EXPECT_GT(saving(), 5);
 }
 
-// Colours need not agree on what is overshot: if too much of one could hide too little of another from the choice of
-// who shoots, it would need three quarters more shots than without overshooting.
+// Colors may disagree about the overshot amount. If an excess of one color could cancel a lack of another in the choice
+// of the shooter, overshooting would need three quarters more shots than plain shooting.
 TEST(Overshooting, SavesShotsInColour) {
   const Assembled room = assembled(read_scene({mesh_folder() / "two_rooms.obj"}), 0.5);
   ASSERT_EQ(room.problem.scattering.reflectance.cols(), 3);

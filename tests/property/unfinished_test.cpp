@@ -1,4 +1,4 @@
-// What a run that is stopped leaves.
+// Results of a run that is stopped early.
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
@@ -14,8 +14,8 @@ namespace {
 
 using namespace test;
 
-// Stops the run from the first moment on for which `is_due(progress, meshes solved before)`. Nothing when that leaves
-// nothing.
+// Stops the run at the first moment for which `is_due(progress, meshes solved before)`. Returns nothing if no result
+// exists by then.
 template <class IsDue>
 std::optional<Simulation> stopped_run(const Request& request, bool keeps, const IsDue& is_due) {
   bool stopped = false;
@@ -54,7 +54,7 @@ TEST(Unfinished, IsTheLastMeshWhoseErrorsAreKnown) {
   EXPECT_FALSE(left->costs.empty());
 }
 
-// As well where patches are cut without an accuracy.
+// The same with local cuts but without an accuracy.
 TEST(Unfinished, IsTheFirstMeshWithItsErrorsWhileASecondIsSolved) {
   Request request;
   request.mesh.patches = 500;
@@ -69,7 +69,7 @@ TEST(Unfinished, IsTheFirstMeshWithItsErrorsWhileASecondIsSolved) {
   EXPECT_EQ(left->accuracy.size(), 1U);
 }
 
-// The same bits as a run that was to end there.
+// The same bits as a run that ends there by itself.
 TEST(Unfinished, IsWhatARunThatEndsThereGives) {
   const auto second_mesh = [](const Progress& p, int solved) { return solved == 1 && p.stage == Stage::form_factors; };
   const std::optional<Simulation> left = stopped_run(accurate(0.002), true, second_mesh);
@@ -95,7 +95,7 @@ TEST(Unfinished, IsTheFirstSolutionWithoutErrorsWhileTheseAreWorkedOut) {
   EXPECT_TRUE(left->accuracy.empty());
 }
 
-// Progressive refinement falls short of the whole light from below.
+// Progressive refinement approaches the full light from below.
 TEST(Unfinished, IsTheLastIterateOfTheSolver) {
   Request request;
   request.mesh.patches = 100;
@@ -118,7 +118,7 @@ TEST(Unfinished, IsNothingBeforeAnythingIsSolvedOrWhenNothingIsWanted) {
   EXPECT_FALSE(stopped_run(accurate(0.002), true, at_once));
   const auto later = [](const Progress& p, int solved) { return solved == 1 && p.stage == Stage::form_factors; };
   EXPECT_FALSE(stopped_run(accurate(0.002), false, later));
-  // Rows of rays are several solutions, none of which is one without the others.
+  // Rows of rays need several solutions, none of which is valid without the others.
   Request by_rays;
   by_rays.mesh.patches = 300;
   by_rays.assembly.storage = Storage::rays;

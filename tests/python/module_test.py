@@ -1,4 +1,4 @@
-"""The module for Python: the same answers as the tool, arrays without copies, operators, solvers, derivatives, errors.
+"""The module for Python: the same results as the tool, arrays without copies, operators, solvers, derivatives, errors.
 
 usage: module_test.py TOOL MESHES, with the module's folder in PYTHONPATH. Ends with 77 where numpy or scipy is missing.
 """
@@ -131,12 +131,12 @@ class ModuleTest(unittest.TestCase):
         t = self.transport
         F = t.form_factors((0, t.size), (0, t.size))
         B = numpy.random.default_rng(1).random((t.size, 3))
-        # What storing them as floats took from a row, below 3e-7 of it, is in apply() alone.
+        # Only apply() includes the part of a row that is lost by storing floats, below 3e-7 of the row.
         numpy.testing.assert_allclose(t.apply(B), F @ B, rtol=1e-6)
         operator = t.operator
         numpy.testing.assert_array_equal(operator @ B, t.apply(B))
         numpy.testing.assert_allclose(operator.rmatvec(B[:, 0]), F.T @ B[:, 0], rtol=1e-6)
-        # scipy's own solver finds what ours does: (1 - rho F) B = E.
+        # scipy's own solver gives the same solution of (1 - rho F) B = E.
         rho, E = t.reflectance[:, 0], t.exitance[:, 0]
         system = scipy.sparse.linalg.LinearOperator((t.size, t.size), matvec=lambda x: x - rho * (operator @ x))
         found, fault = scipy.sparse.linalg.gmres(system, E, tol=1e-10, atol=0)
@@ -163,7 +163,7 @@ class ModuleTest(unittest.TestCase):
         own = pl.solve(self.scene, patches=400, own=jacobi, no_error_bars=True)
         ours = self.transport.solve("jacobi", tolerance=1e-12, max_iterations=40)
         self.assertEqual(ours.history[-1]["iteration"], 40)
-        # The same form factors, and sums over bands together or one by one: rounding alone.
+        # The same form factors, with sums over bands together or one by one: rounding alone.
         numpy.testing.assert_allclose(own.irradiance, ours.irradiance, rtol=1e-9)
         numpy.testing.assert_allclose(own.irradiance, self.solved.irradiance, rtol=1e-4)
 
@@ -195,8 +195,8 @@ class ModuleTest(unittest.TestCase):
         G = t.sensor_factors()
         step = 1e-4
         for k, found in enumerate(pl.sensor_sensitivities(t)):
-            # What a sensor reads is sampled with rays that follow the light, and patches are even here, but planes there:
-            # six standard errors, and both have them.
+            # Sensor readings are sampled with rays that follow the light, here for constant patches, there for linear
+            # ones. The limit is six standard errors, of both.
             numpy.testing.assert_array_less(abs(found["value"] - read["irradiance"][k]), 6 * numpy.sqrt(2) * read["standard_error"][k] + 1e-12)
             for m in range(len(scene.materials)):
                 for quantity in ("reflectance", "exitance"):
@@ -216,7 +216,7 @@ class ModuleTest(unittest.TestCase):
         return (weights[:, None] * transport.apply(B)).sum(axis=0)[1]
 
     def radiosity_of(self, transport, scene):
-        """The radiosity with the materials of a scene, by fixed-point iteration: no solver of ours."""
+        """The radiosity with the materials of a scene, by fixed-point iteration instead of a patchlight solver."""
         rho = numpy.array([list(material.reflectance) for material in scene.materials])[transport.material]
         before = numpy.array([list(material.exitance) for material in self.scene.materials])[transport.material]
         now = numpy.array([list(material.exitance) for material in scene.materials])[transport.material]
@@ -271,7 +271,7 @@ class ModuleTest(unittest.TestCase):
             while not asked:
                 apply(exitance)
 
-        # A run that does not hear of Ctrl-C fails and does not hang.
+        # A run that ignores Ctrl-C fails and does not hang.
         guard = threading.Timer(20, lambda: asked.append(True))
         guard.start()
         before = signal.getsignal(signal.SIGINT)
@@ -279,7 +279,7 @@ class ModuleTest(unittest.TestCase):
             pl.solve(self.scene, own=endless, patches=60, no_error_bars=True)
         guard.cancel()
         self.assertEqual(asked, [])
-        # Nothing of it stays: signals are Python's, and the next run is as ever.
+        # The module restores Python's signal handlers, and the next run works.
         self.assertIs(signal.getsignal(signal.SIGINT), before)
         with self.assertRaises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)

@@ -11,7 +11,7 @@
 #include <memory>
 #include <utility>
 
-// A scene made ready for the solvers, as simulate() does it.
+// A scene prepared for the solvers, as simulate() does it.
 namespace patchlight::test {
 
 struct Assembled {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-// Parts of requests, each of which can be asked for alone, and which of them cannot be together.
+// Parts of requests that are valid alone, and the pairs of them that exclude each other.
 namespace patchlight::test {
 
 struct RequestPart {
-  std::string name;  ///< as messages have it
+  std::string name;  ///< as in messages
   std::function<void(Request&, Given&)> ask;
 };
 
@@ -62,7 +62,7 @@ inline std::vector<RequestPart> request_parts() {
           {"given.form_factors", [](Request&, Given& given) { given.form_factors = true; }}};
 }
 
-/// Every part with those that it excludes.
+/// Every part with the parts that it excludes.
 inline std::vector<std::pair<std::string, std::vector<std::string>>> exclusive_parts() {
   const std::vector<std::string> bars = {"accuracy.error_bars", "accuracy.relative_error", "accuracy.seconds"};
   const auto and_bars = [&](std::vector<std::string> others) {

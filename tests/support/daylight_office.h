@@ -4,7 +4,7 @@
 
 #include <utility>
 
-// A room by day, of one band.
+// A room by day, in one band.
 namespace patchlight::test {
 
 inline Spectrum watts(double value) { return Spectrum::Constant(1, value); }
@@ -16,8 +16,8 @@ inline Material named(const std::string& name, double reflectance, double transm
   return material;
 }
 
-// A closed office of 4 x 5 x 3 m whose wall at low y is one pane, a desk in it, ground before it, a luminaire below the
-// ceiling, the sun in the south-west and an overcast sky.
+// A closed office of 4 x 5 x 3 m whose wall at low y is one pane. It has a desk, a luminaire below the ceiling, and
+// ground outside. The sun is in the south-west, and the sky is overcast.
 inline Scene daylight_office() {
   Scene scene = empty_scene({named("plaster", 0.6), named("pane", 0.1, 0.8), named("desk", 0.4), named("ground", 0.2)});
   scene.groups = {"room", "furniture", "outside"};
@@ -40,7 +40,7 @@ inline Scene daylight_office() {
   return scene;
 }
 
-// Turned and with another unit; irradiances stay, as intensities go with the square of lengths.
+// The scene turned and in another unit. Irradiances stay the same, as intensities scale with the square of lengths.
 inline Scene turned(Scene scene, double scale) {
   const Eigen::AngleAxisd turn(0.7, Vector(1, 2, 3).normalized());
   for (Point& vertex : scene.vertices) vertex = scale * (turn * vertex);

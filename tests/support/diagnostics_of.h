@@ -20,7 +20,7 @@ inline std::vector<DiagnosticCode> codes_of(const Diagnostics& diagnostics) {
   return codes;
 }
 
-/// The diagnostics of a scene that are notes, and the others.
+/// The diagnostics of a scene that are notes.
 inline Diagnostics notes_of(const Scene& scene) { return chosen(scene.diagnostics, is_note); }
 inline Diagnostics problems_of(const Scene& scene) {
   return chosen(scene.diagnostics, [](DiagnosticCode code) { return !is_note(code); });

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-// The oracle of all solvers: dense LU of I - R F.
+// The reference for all solvers: dense LU of I - R F.
 namespace patchlight::test {
 
 inline Field direct_solution(const TransportOperator& transport, const RadiosityProblem& problem) {

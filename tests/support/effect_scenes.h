@@ -10,7 +10,7 @@
 // Scenes made for one effect each, and requests with and without it.
 namespace patchlight::test {
 
-/// An empty room of 4 x 3 x 2.5 m whose ceiling is the lamp: nothing can stand between two patches.
+/// An empty room of 4 x 3 x 2.5 m whose ceiling is the lamp, so that nothing can block a pair of patches.
 inline Scene lit_box(double reflectance) {
   Scene scene = empty_scene({grey(reflectance), grey(reflectance, 10)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -34,17 +34,17 @@ inline Scene in_colours(const Spectrum& reflectance, const Spectrum& lamp, const
   return with_point_light(std::move(scene), luminaire);
 }
 
-/// The polygons of the lit one of two_rooms().
+/// Number of polygons of the lit room in two_rooms().
 inline constexpr PolygonIndex polygons_of_lit_room = 13;
 
-/// The furnished room, and beside it a dark one with a box in it; the normals of both look inward.
+/// The furnished room beside a dark room with a box in it; the normals of both point inward.
 inline Scene two_rooms(double reflectance) {
   Scene scene = furnished_room(reflectance);
   scene = with_box(std::move(scene), Point(5, 0, 0), Point(8, 3, 2.5), true);
   return with_box(std::move(scene), Point(6, 1, 0.5), Point(7, 2, 1.5), false);
 }
 
-/// With a sun halfway up and a uniform sky.
+/// The scene with a sun at an altitude of 40 degrees and a uniform sky.
 inline Scene with_daylight(Scene scene) {
   scene.sun = Sun{Vector(0.48, 0.6, 0.64), Spectrum::Constant(1, 20)};
   Sky sky;
@@ -53,7 +53,7 @@ inline Scene with_daylight(Scene scene) {
   return scene;
 }
 
-/// The front sides of a scene in patches of this size, metres.
+/// A request for the front sides of a scene in patches of this size, meters.
 inline Request coarse(double max_edge = 0.4) {
   Request request;
   request.mesh.max_edge = max_edge;

@@ -11,7 +11,7 @@
 // Errors against a finer solution.
 namespace patchlight::test {
 
-/// Irradiance of a finer solution, and which share of its patches is exposed.
+/// Irradiance of a finer solution, and the exposed fraction of its patches.
 struct FinerReference {
   PatchMesh mesh;
   SlopedField irradiance_times_share;
@@ -25,9 +25,9 @@ inline FinerReference reference_of(const Simulation& finer) {
           with_slopes(finer.mesh, share)};
 }
 
-/// How far the patches' mean irradiances are from a reference.
+/// The deviation of the patches' mean irradiances from a reference.
 struct TrueError {
-  Field of_patches;     ///< W/m^2; 0 for patches of which hardly anything is exposed
+  Field of_patches;     ///< W/m^2; 0 for patches that are almost fully covered
   double relative = 0;  ///< ||rho o error||_A / ||B - E||_A, worst band
 };
 
@@ -52,7 +52,7 @@ inline double median(const Field& values) {
   return sorted[sorted.size() / 2];
 }
 
-/// The share of patches and bands whose true error is not above the bar.
+/// The fraction of patches and bands whose true error is not above the bar.
 inline double covered(const Field& error, const Field& bar) {
   return static_cast<double>((error <= bar).count()) / static_cast<double>(error.size());
 }

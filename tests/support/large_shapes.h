@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-// Shapes of as many corners or faces as are asked for.
+// Shapes with a given number of corners or faces.
 namespace patchlight::test {
 
 inline std::vector<Point> disc(int corners) {
@@ -19,7 +19,7 @@ inline std::vector<Point> disc(int corners) {
   return points;
 }
 
-// A room with triangles that share an edge, like the leaves of a book.
+// A room with triangles that share an edge, like the pages of a book.
 inline Scene book(int leaves) {
   Scene scene = empty_scene({grey(0.5)});
   scene.vertices = {Point(0, 0, 0), Point(0, 0, 1)};

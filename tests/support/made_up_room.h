@@ -10,7 +10,7 @@
 
 namespace patchlight::test {
 
-// A made-up closed scene: symmetric positive exchange areas, areas their row sums times `openness`.
+// A made-up closed scene: symmetric positive exchange areas; the areas are their row sums times `openness`.
 struct Room {
   std::unique_ptr<RowTransport> transport;
   RadiosityProblem problem;
@@ -26,7 +26,7 @@ inline Room made_up(PatchIndex n, double reflectance, double openness = 1) {
   }
   const Eigen::VectorXd area = openness * row_sums(S);
   RadiosityProblem problem{{Field::Constant(n, 3, reflectance)}, Field::Zero(n, 3), area};
-  // Two lamps of different colour; the third band has no light at all; one patch is black.
+  // Two lamps of different color, no light in the third band, and one black patch.
   problem.exitance(1, 0) = 5;
   problem.exitance(n - 1, 1) = 2;
   problem.scattering.reflectance.row(2) = 0;

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <vector>
 
-// Walls with small openings: flat pieces that let through a known share of a square.
+// Walls with small openings: flat pieces that leave a known fraction of a square open.
 namespace patchlight::test {
 
-// The polygons of a partition in the plane x = 1 between y, z = 0 and 2, or close to it.
+// The polygons of a partition in or close to the plane x = 1, for y and z from 0 to 2.
 using Partition = std::vector<Quad>;
 
 // The rectangle in the plane x = 1 with these bounds.
@@ -17,7 +17,7 @@ inline Quad upright(double y0, double z0, double y1, double z1) {
   return {Point(1, y0, z0), Point(1, y1, z0), Point(1, y1, z1), Point(1, y0, z1)};
 }
 
-// Upright strips with so many slits between them, which make up the share `open`: half a strip at either end.
+// Upright strips with `count` slits between them that make up the fraction `open`; a half strip at either end.
 inline Partition slits(int count, double open) {
   Partition strips;
   const double pitch = 2.0 / count;
@@ -29,7 +29,7 @@ inline Partition slits(int count, double open) {
   return strips;
 }
 
-// Square holes, count x count, which make up the share `open`.
+// count x count square holes that make up the fraction `open`.
 inline Partition perforated(int count, double open) {
   Partition pieces;
   const double pitch = 2.0 / count;
@@ -44,7 +44,7 @@ inline Partition perforated(int count, double open) {
   return pieces;
 }
 
-// Level slats of this depth, turned by 45 degrees: from the lit side one looks down through them.
+// Level slats, tilted by 45 degrees: they rise away from the lit side.
 inline Partition louvres(int count) {
   Partition slats;
   const double pitch = 2.0 / count;
@@ -57,7 +57,7 @@ inline Partition louvres(int count) {
   return slats;
 }
 
-// Upright bars as wide as a twentieth of the spaces between them.
+// Upright bars whose width is a twentieth of the gaps between them.
 inline Partition railing(int count) {
   Partition bars;
   const double pitch = 2.0 / count;
@@ -68,7 +68,7 @@ inline Partition railing(int count) {
   return bars;
 }
 
-// A closed room of 2 x 2 x 2 m with a partition in its middle. The wall at x = 0 emits 1 W/m^2, all is grey.
+// A closed gray room of 2 x 2 x 2 m with a partition in its middle. The wall at x = 0 emits 1 W/m^2.
 inline Scene divided(const Partition& partition) {
   Scene scene = empty_scene({grey(0.5), grey(0.5, 1)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(2, 2, 2), true);
@@ -77,7 +77,7 @@ inline Scene divided(const Partition& partition) {
   return scene;
 }
 
-// Where divided() has its faces.
+// Indices of the faces of divided().
 inline constexpr PolygonIndex far_wall = 3;
 
 }  // namespace patchlight::test

@@ -10,16 +10,16 @@
 
 namespace patchlight::tiny {
 
-/// A polygon that is worth meshing.
+/// A polygon as a test case for meshing.
 struct Shape {
   std::string name;
   Scene scene;
-  double thickness = 1;  ///< its height over its length, about: 1 for well-shaped polygons
+  double thickness = 1;  ///< about its height over its length: 1 for well-shaped polygons
 };
 
 inline void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
 
-/// Some units in size; each tilted out of the coordinate planes.
+/// A few units in size, each tilted out of the coordinate planes.
 inline std::vector<Shape> polygon_shapes() {
   using std::numbers::pi;
   std::vector<Point> hexagon;

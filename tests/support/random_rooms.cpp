@@ -16,16 +16,16 @@ using Faces = std::vector<RoomFace>;
 
 constexpr double degree = std::numbers::pi / 180;
 
-// Random numbers of one room, in the order of the calls.
+// Random numbers of one room; they depend on the order of the calls.
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : seed_(seed) {}
   double unit() { return (hash({seed_, count_++}) + 0.5) * 0x1p-32; }
   bool chance(double probability) { return unit() < probability; }
   int whole(int low, int high) { return low + static_cast<int>(unit() * (high - low + 1)); }
-  // Rounded to millimetres, or thousandths of another unit.
+  // Rounded to millimeters, or thousandths of another unit.
   double between(double low, double high) { return std::round(1000 * (low + unit() * (high - low))) / 1000; }
-  // Log-uniform: as many from 20 to 100 as from 100 to 500.
+  // Log-uniform: equally likely from 20 to 100 and from 100 to 500.
   double log_between(double low, double high) {
     return std::round(1000 * std::exp(std::log(low) + unit() * std::log(high / low))) / 1000;
   }
@@ -78,7 +78,7 @@ Box bounds_of(const Faces& faces) {
   return box;
 }
 
-// A room while it is made, and the bodies in it that sensors keep away from.
+// A room under construction, and the bodies in it that sensors keep away from.
 struct Draft {
   RandomRoom room;
   Dice dice;
@@ -94,20 +94,20 @@ struct Draft {
   }
 };
 
-// True when the place is so far from all bodies.
+// True if the point is at least this far from all bodies.
 bool is_free(const Draft& draft, const Point& point, double distance) {
   return std::none_of(draft.bodies.begin(), draft.bodies.end(),
                       [&](const Box& body) { return body.exteriorDistance(point) < distance; });
 }
 
-// True when the faces keep 2 cm from all bodies.
+// True if the faces keep 2 cm from all bodies.
 bool fits(const Draft& draft, const Faces& faces) {
   const Box box = bounds_of(faces);
   return std::none_of(draft.bodies.begin(), draft.bodies.end(),
                       [&](const Box& body) { return body.exteriorDistance(box) < 0.02; });
 }
 
-// A point of a box that is so far from all bodies.
+// A point of a box that is this far from all bodies.
 Point find_place(Draft& draft, const Point& low, const Point& high, double distance) {
   for (int k = 0; k < 1000; ++k) {
     Point point;
@@ -138,9 +138,9 @@ Faces make_walls(const Vector& size, bool has_front) {
 
 // Windows in a row in the wall at y = 0.
 struct WindowRow {
-  double thickness = 0;  // of the walls, metres; 0: a sheet
+  double thickness = 0;  // of the walls, meters; 0: a sheet
   double sill = 0, head = 0;
-  std::vector<std::array<double, 2>> openings;  // from x to x, growing
+  std::vector<std::array<double, 2>> openings;  // from x to x, ascending
 };
 
 WindowRow make_window_row(Dice& dice, const Vector& size) {
@@ -200,10 +200,10 @@ Faces make_panes(const WindowRow& row) {
   return faces;
 }
 
-// The level of the ground around the house.
+// The height of the ground around the house.
 constexpr double ground_level = -0.1;
 
-// A level ground that extends to `reach` from the house: before the window wall alone, or all around.
+// Level ground that extends to `reach` from the house: in front of the window wall only, or all around.
 Faces make_lawn(const Point& low, const Point& high, double reach, bool all_around) {
   const double x0 = low.x() - reach, x1 = high.x() + reach, y0 = low.y() - reach, y1 = high.y() + reach;
   const auto part = [](double xa, double xb, double ya, double yb) {
@@ -218,7 +218,7 @@ Faces make_lawn(const Point& low, const Point& high, double reach, bool all_arou
   return faces;
 }
 
-// Triangles over 6 x 6 nodes: level around the house, hills farther off.
+// Triangles over 6 x 6 nodes: level around the house, hills farther away.
 Faces make_hills(Dice& dice, double reach) {
   const double near = 20 + 0.05 * reach;
   const std::array<double, 6> lines = {-reach, -reach / 2, -near, near, reach / 2, reach};
@@ -252,7 +252,7 @@ void add_daylight(Draft& draft) {
   draft.room.daylight = day;
 }
 
-// A table on four legs, turned about its centre.
+// A table on four legs, turned about its center.
 Faces make_table(Dice& dice, const Vector& size) {
   const double w = dice.between(0.9, 1.6), d = dice.between(0.6, 0.9), top = dice.between(0.68, 0.74);
   const double reach = std::hypot(w, d) / 2 + 0.05;
@@ -268,14 +268,14 @@ Faces make_table(Dice& dice, const Vector& size) {
   return turn_about(std::move(faces), centre, dice.chance(0.5) ? dice.between(-60, 60) : 0);
 }
 
-// A cupboard 1 cm to 10 cm before the wall at the largest y, away from the corners and below all lamps.
+// A cupboard 1 cm to 10 cm in front of the wall at the largest y, away from the corners and below all lamps.
 Faces make_cupboard(Dice& dice, const Vector& size) {
   const double w = dice.between(0.6, 1.4), d = dice.between(0.35, 0.5), h = dice.between(0.8, size.z() - 0.9);
   const double x = dice.between(0.1, size.x() - w - 0.1), y = size.y() - d - dice.between(0.01, 0.1);
   return make_box("cupboard", "furniture", Point(x, y, 0), Point(x + w, y + d, h), "+x-x+y-y+z");
 }
 
-// Tables and a cupboard, each at the first of twenty places where it stands clear of other bodies.
+// Tables and a cupboard. Each stands at the first of twenty random places that is clear of other bodies.
 void add_furniture(Draft& draft) {
   const int tables = draft.dice.whole(1, 2);
   for (int k = 0; k <= tables; ++k)
@@ -296,7 +296,7 @@ void add_overhang(Draft& draft, const WindowRow& row) {
   draft.add(make_box("overhang", "facade", low, high, "+x-x-y+z-z"));
 }
 
-// Houses before the window, next to one another from left to right.
+// Houses in front of the window, side by side from left to right.
 void add_neighbors(Draft& draft, const WindowRow& row) {
   Dice& dice = draft.dice;
   const int houses = dice.whole(1, 3);
@@ -309,7 +309,7 @@ void add_neighbors(Draft& draft, const WindowRow& row) {
   }
 }
 
-// Sheets before the windows: level slats tilted down to the outside, or upright ones.
+// Sheets in front of the windows: horizontal slats tilted down to the outside, or upright ones.
 void add_slats(Draft& draft, const WindowRow& row) {
   Dice& dice = draft.dice;
   const double width = dice.between(0.06, 0.25), pitch = width * dice.between(0.8, 1.3);
@@ -363,7 +363,7 @@ void add_panel(Draft& draft, const Point& centre, double w, double d, bool emits
   draft.add_body(faces);
 }
 
-// A place for a lamp at this distance below the ceiling, 20 cm or more from all bodies.
+// A place for a lamp at this distance below the ceiling, at least 20 cm from all bodies.
 Point find_lamp_place(Draft& draft, double margin, double below) {
   const Point low(margin, margin, draft.room.size.z() - below);
   return find_place(draft, low, Point(draft.room.size.x() - margin, draft.room.size.y() - margin, low.z()), 0.2);
@@ -414,7 +414,7 @@ void add_luminaires(Draft& draft) {
   for (int k = 0; k < count; ++k) draft.room.luminaires.push_back(make_luminaire(draft));
 }
 
-// Mirrors 1 to 3 cm before two walls. In every other room a spot is aimed at the center of one.
+// Mirrors 1 to 3 cm in front of two walls. In every other room, a spot is aimed at the center of one.
 void add_mirrors(Draft& draft) {
   Dice& dice = draft.dice;
   const Vector& size = draft.room.size;
@@ -501,7 +501,7 @@ void add_lamp_parts(Draft& draft) {
   if (kind == "furnished" || dice.chance(0.2)) add_furniture(draft);
 }
 
-// Nine on a work plane, four near walls, one that faces a wall from afar, one that faces down near the ceiling.
+// Nine sensors on a work plane, four near walls, one that faces a distant wall, one near the ceiling that faces down.
 void add_sensors(Draft& draft) {
   const Vector size = draft.room.size;
   constexpr double margin = 0.3, near = 0.05;

@@ -16,7 +16,7 @@ namespace patchlight::test {
 struct RoomFace {
   std::string group;
   std::string material;
-  std::vector<Point> corners;  ///< metres
+  std::vector<Point> corners;  ///< meters
 };
 
 /// A material of three bands. A pane has a transmittance, a mirror a specular reflectance.
@@ -31,12 +31,12 @@ struct RoomMaterial {
 /// A lamp without a polygon.
 struct RoomLuminaire {
   std::string kind = {};           ///< "point", "spot", "sphere" or "ies"
-  Point position = Point::Zero();  ///< metres
+  Point position = Point::Zero();  ///< meters
   Vector aim = -Vector::UnitZ();
-  double watts = 0;        ///< per band; of "ies" lumens
-  double beam_angle = 0;   ///< degrees, of "spot"
-  double field_angle = 0;  ///< degrees, of "spot"
-  double radius = 0;       ///< metres, of "sphere"
+  double watts = 0;        ///< per band; lumens for "ies"
+  double beam_angle = 0;   ///< degrees, for "spot"
+  double field_angle = 0;  ///< degrees, for "spot"
+  double radius = 0;       ///< meters, for "sphere"
 };
 
 /// Sun and sky.
@@ -49,24 +49,24 @@ struct RoomDaylight {
   double horizon_below = 0;  ///< reflectance of the ground below the horizon
 };
 
-/// A sensor: position in metres and direction.
+/// A sensor: position in meters and direction.
 struct RoomSensor {
   Point point;
   Vector normal;
 };
 
-/// A room in plain numbers: z is up, the air volume of the room begins at the origin and extends to `size`.
+/// A room as plain numbers: z is up, and the air volume of the room extends from the origin to `size`.
 struct RandomRoom {
   std::string name;              ///< "overhang_07"
   std::string kind;              ///< "overhang"
-  Vector size = Vector::Zero();  ///< metres
+  Vector size = Vector::Zero();  ///< meters
   std::vector<RoomMaterial> materials = {};
   std::vector<RoomFace> faces = {};
   std::vector<RoomLuminaire> luminaires = {};
   std::optional<RoomDaylight> daylight = {};
   std::vector<RoomSensor> sensors = {};
   double turn = 0;           ///< degrees about z, applied when the room is written
-  bool millimetres = false;  ///< the files state lengths in millimetres
+  bool millimetres = false;  ///< the files state lengths in millimeters
 };
 
 /// The kinds of rooms lit by sun and sky, and of those lit by lamps.

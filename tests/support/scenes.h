@@ -23,7 +23,7 @@ inline Scene empty_scene(std::vector<Material> materials) {
   return scene;
 }
 
-// Adds a polygon with vertices of its own.
+// Adds a polygon with separate vertices.
 inline Scene with_polygon(Scene scene, const std::vector<Point>& corners, MaterialIndex material = 0) {
   Polygon polygon;
   polygon.material = material;
@@ -62,7 +62,7 @@ inline Scene cube_room(double reflectance, double exitance) {
   return with_box(empty_scene({grey(reflectance, exitance)}), Point(0, 0, 0), Point(1, 1, 1), true);
 }
 
-// A closed 4 x 3 x 2.5 m room with a box that floats in it, and a lamp in its ceiling's middle, 1 cm below.
+// A closed 4 x 3 x 2.5 m room with a floating box, and a lamp 1 cm below the middle of its ceiling.
 inline Scene furnished_room(double reflectance, double lamp_exitance = 10) {
   Scene scene = empty_scene({grey(reflectance), grey(0, lamp_exitance)});
   scene = with_box(std::move(scene), Point(0, 0, 0), Point(4, 3, 2.5), true);

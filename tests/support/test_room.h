@@ -15,7 +15,7 @@ struct TurnedBox {
   double angle;  ///< radians
 };
 
-/// Its six faces, two triangles each; fronts outward.
+/// The six faces of the box, two triangles each; fronts outward.
 inline Scene with_triangles(Scene scene, const TurnedBox& box, MaterialIndex material) {
   const Eigen::Affine3d placed =
       Eigen::Translation3d(box.middle) * Eigen::AngleAxisd(box.angle, Vector::UnitZ()) * Eigen::Scaling(box.half);
@@ -27,8 +27,8 @@ inline Scene with_triangles(Scene scene, const TurnedBox& box, MaterialIndex mat
   return scene;
 }
 
-/// A closed room of 4 x 3 x 2.5 m with two blocks that are turned and a thin slab, which float in it; a lamp of
-/// 0.6 x 0.6 m in its ceiling's middle, which reflects like the rest. All triangles.
+/// A closed room of 4 x 3 x 2.5 m with two turned blocks and a thin slab, which all float. A lamp of 0.6 x 0.6 m in the
+/// middle of the ceiling reflects like the rest. All faces are triangles.
 inline Scene test_room(double reflectance) {
   Scene scene = empty_scene({grey(reflectance), grey(reflectance, 10)});
   const std::vector<Quad> faces = box_faces(Point(0, 0, 0), Point(4, 3, 2.5), true);
@@ -53,7 +53,7 @@ inline Scene test_room(double reflectance) {
   return with_triangles(std::move(scene), {Point(2.6, 0.7, 1.0), Vector(0.5, 0.3, 0.02), 0.1}, 0);
 }
 
-/// With this edge it has 2,238 patches.
+/// The edge at which the room has 2,238 patches.
 inline constexpr double test_room_edge = 0.329;
 
 }  // namespace patchlight::test

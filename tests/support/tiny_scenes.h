@@ -10,7 +10,7 @@ namespace patchlight::tiny {
 
 using Corners = std::vector<std::uint32_t>;
 
-/// A scene of polygons of one grey material.
+/// A scene of polygons with one gray material.
 inline Scene scene_of(std::vector<Point> vertices, const std::vector<Corners>& polygons) {
   Scene scene;
   scene.vertices = std::move(vertices);
@@ -41,7 +41,7 @@ inline Scene box(const Vector& size) {
   return scene_of(vertices, {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}});
 }
 
-/// Every polygon cut into a fan of triangles from its first corner.
+/// Every polygon, cut into a fan of triangles from its first corner.
 inline Scene in_triangles(const Scene& scene) {
   Scene result = scene;
   result.polygons.clear();

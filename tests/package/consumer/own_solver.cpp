@@ -1,5 +1,4 @@
-// A solver of one's own in place of the library's: Jacobi's iteration, in which every step is a bounce of light. It is
-// compared with the library's own.
+// A custom solver compared with the library's: Jacobi's iteration, in which every step is a bounce of light.
 #include <patchlight/patchlight.h>
 
 using namespace patchlight;
@@ -24,8 +23,7 @@ int main(int, char** arguments) {
   request.mesh.patches = 100;
   const Simulation usual = simulate(scene, request);
   const Simulation own = simulate(scene, request, {}, {.solve = bounce_by_bounce});
-  // What is left after the last bounce is at most rho / (1 - rho) times that bounce: ten times for a reflectance of
-  // 0.9.
+  // The light after the last bounce is at most rho / (1 - rho) times that bounce: nine times for a reflectance of 0.9.
   const double off = relative_error(usual.solution.radiosity, own.solution.radiosity, usual.problem);
   return own.solution.converged && off < 1e-4 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 #include <patchlight/simulate.h>
 
-// Two squares of 1 m that face each other 1 m apart; the upper one is the lamp.
+// Two squares of 1 m that face each other at a distance of 1 m; the upper one is the lamp.
 int main() {
   using namespace patchlight;
   Scene scene;
