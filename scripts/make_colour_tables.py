@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes src/light/colour_tables.cpp: the CIE 1931 observer, illuminant D65, the components of daylight, and the
-reflectances of the three primaries of Rec. 709.
+"""Prints the tables of src/light/spectra.cpp: the CIE 1931 observer, illuminant D65, the components of daylight, and the
+reflectances of the red and green primaries of Rec. 709; that of blue is the rest up to 1.
 
 usage: scripts/make_colour_tables.py FOLDER
 
@@ -13,15 +13,6 @@ import pathlib
 import sys
 
 import numpy as np
-
-HEADER = """// Made by scripts/make_colour_tables.py from the tables named here; not to be changed by hand.
-// clang-format off
-
-#include "light/colour_tables.h"
-
-namespace patchlight {
-
-"""
 
 # CIE 15:2004, table T.2: 380 to 780 nm by 10 nm.
 S = """63.4 38.5 3 65.8 35 1.2 94.8 43.4 -1.1 104.8 46.3 -.5 105.9 43.9 -.7 96.8 37.1 -1.2 113.9 36.7 -2.6 125.6 35.9 -2.9
@@ -144,7 +135,7 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     observer = table(folder / "cie1931_2deg_xyz.csv")[:, 1:]
     d65 = table(folder / "cie_d65.csv")[:, 1]
-    text = HEADER
+    text = ""
     origin = "from the tables of raysect (BSD-3, demos and optics, commit 5ed9a21b)."
     for k, letter in enumerate("xyz"):
         text += array(f"CIE 1931 2 degree observer, {letter}; {origin}", f"observer_{letter}", observer[:, k], 9)
@@ -152,9 +143,9 @@ def main():
     components = np.array(S.split(), dtype=float).reshape(-1, 3)
     for k in range(3):
         text += array("CIE 15:2004, table T.2.", f"daylight_{k}", components[:, k], 2)
-    for name, values in zip(("red", "green", "blue"), primaries(observer, d65)):
+    for name, values in zip(("red", "green"), primaries(observer, d65)):
         text += array("Mallett and Yuksel 2019, computed for D65.", f"reflectance_{name}", values, 12)
-    (pathlib.Path(__file__).parents[1] / "src/light/colour_tables.cpp").write_text(text + "}  // namespace patchlight\n")
+    print(text, end="")
 
 
 main()

@@ -57,7 +57,7 @@ inline constexpr std::uint8_t seen_as_whole = 1;
 std::uint8_t as_point(double more);                         ///< `more` up to 4, in steps of 0.02
 std::optional<double> more_at_point(std::uint8_t seen_as);  ///< nothing if it is not a point
 
-/// The results of the rays of all quarters: patch i has the quarters 4 i to 4 i + 3 (mesh/small_patches.h).
+/// The results of the rays of all quarters: patch i has the quarters 4 i to 4 i + 3 (mesh/nested_mesh.h).
 struct GatheredQuarters {
   int rays = 0;                 ///< from each quarter
   Field irradiance;             ///< per quarter: mean over its exposed part, without luminaires, sun and sky, W/m^2
