@@ -12,7 +12,7 @@
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "plan/planned_scene.h"
 
 #include <memory>

@@ -2,28 +2,35 @@
 
 #include <cstdint>
 
-/// Names of the streams of random numbers. hash({seed, place, stream::name}) starts one: two purposes at one place draw
-/// independent numbers when their streams differ. Streams whose places have different keys may share a number.
+/// Names of the streams of random numbers. A stream starts at hash({seed, place, stream::name}), or at another key that
+/// its place of use shows: two purposes with the same key draw independent numbers if their streams differ. Each group
+/// below has keys of its own, so that numbers repeat between groups. Within a group equal numbers belong to purposes
+/// that no run combines, or to keys of different lengths.
 namespace patchlight::stream {
 
 enum Stream : std::uint64_t {
-  // Form factors and rows of rays
+  // Seeds of later computations of one run
+  repeated_run = 1,
+  later_meshes = 0x2d5,
+
+  // Form factors by rows of rays, or by pairs
   hemisphere = 0,
   toward_bright_patches = 1,
-  lost_rays = 1,
-  repeated_run = 1,
-  ways_at_panes = 2,
-  row_estimate = 2,
+  lost_rays = 1,      // pairs alone
+  ways_at_panes = 2,  // rays alone
+  row_estimate = 2,   // pairs alone
   points_on_lamps = 3,
-  later_meshes = 0x2d5,
-  signs_of_rows = 0x64726177,
-  signs_of_lights,
+
+  // Signs of the errors of patches
   signs_of_direct_light = 2,
+  signs_of_rows = 0x64726177,
+  signs_of_lights = 0x64726178,
   signs_of_row_sums = 0x726f77,
 
-  // Light in mirrors: shared points, and the shift of each receiver or sensor
+  // Light in mirrors: shared points, and the shift of each receiver or sensor. Direct light shifts the points of its
+  // sources by their index in place of a stream.
   points_of_mirror_chains = 7,
-  shift_at_receiver = 8,
+  shift_at_receiver = 0x73686966,
   points_of_mirrored_sensors = 9,
   shift_at_mirrored_sensor = 10,
 
@@ -47,11 +54,11 @@ enum Stream : std::uint64_t {
   panes_of_bounce = 5,
   next_bounce = 6,
   choice_of_lamp = 11,
-  place_on_lamp,
-  choice_of_luminaire,
-  place_on_luminaire,
+  place_on_lamp = 12,
+  choice_of_luminaire = 13,
+  place_on_luminaire = 14,
   sky_openings = 21,
-  sky_hemisphere,
+  sky_hemisphere = 22,
   ambient_occlusion = 31,
 
   // Planning and spaces
@@ -65,11 +72,11 @@ enum Stream : std::uint64_t {
   path_luminaire = 5,
   path_vertices = 6,  // and the three after it
   pane_or_reflection = 6,
-  path_survives = 10,
+  vertex_sends_shadow_rays = 10,
   mirror_jitter = 11,
-  mirror_order,
-  mirror_luminaire,
-  mirror_chain,
+  mirror_order = 12,
+  mirror_luminaire = 13,
+  mirror_chain = 14,
   path_seeds = 0x70617468,
   next_mirror = 1,
   side_of_next_mirror = 2,

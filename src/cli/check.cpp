@@ -17,7 +17,7 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"
 #include "plan/check_request.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
 #include "scene/sensor_grid.h"

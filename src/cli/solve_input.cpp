@@ -8,7 +8,7 @@
 #include "input/tables/read_tables.h"
 #include "input/text.h"
 #include "output/file/whole_file.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "scene/specular_faces.h"
 
 #include <cmath>

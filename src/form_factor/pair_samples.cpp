@@ -14,6 +14,7 @@ namespace patchlight {
 // At most 256 scrambles, and so many that the table stays below 150 MB.
 SampleTable::SampleTable(std::uint32_t samples, std::uint64_t seed)
     : samples_(samples), scrambles_(std::clamp((1U << 22) / samples, 16U, 256U)), seed_(seed) {
+  assert(samples > 0);
   table_.resize(std::size_t{scrambles_} * 4 * samples);
   for (std::uint32_t scramble = 0; scramble < scrambles_; ++scramble) {
     const auto points = scrambled_sobol(samples, hash({seed, scramble}));

@@ -123,6 +123,7 @@ Gradient Planes::fitted(PatchIndex j, std::span<const PatchIndex> around) const 
   }
   const double size = squares.trace();
   if (!(size > 0)) return Gradient::Zero(3, values_.cols());
+  // The damping of 1e-6 keeps the matrix regular where the patches lie on one line.
   squares += size * (mesh_.normal[j] * mesh_.normal[j].transpose() + 1e-6 * Eigen::Matrix3d::Identity());
   Gradient gradient = squares.ldlt().solve(products);
   const PatchCorners corners = mesh_.corner_points(j);

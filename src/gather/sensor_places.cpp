@@ -216,7 +216,7 @@ std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& side
                     {sides, kept_sides(scene, Sides::automatic)},
                     shells_of(scene),
                     welded(scene.vertices, weld_distance(scene)),
-                    Tolerances(extent_of(scene)).weld,
+                    tolerance_of_coordinates * extent_of(scene),
                     points_on_lamps(scene, facets)};
 
   // 1. The surroundings of each point: sides that are not simulated, or a shell that may be a wall
@@ -255,10 +255,10 @@ PlaceAndPoint place_of_sensor(const Sensor& sensor, std::span<const Facet> facet
   SensorPlace place{sensor};
   Point before = sensor.point;
   for (const Facet& facet : facets) {
-    const double distance = std::max(1e-5 * facet.size, Tolerances(extent).weld);
+    const double distance = std::max(1e-5 * facet.size, tolerance_of_coordinates * extent);
     if (!lies_on(place.sensor.point, facet, distance)) continue;
     const double cosine = facet.normal.dot(sensor.normal);
-    if (std::abs(cosine) < 0.01) {
+    if (std::abs(cosine) < 0.01) {  // within 0.6 degrees of the plane
       place.standing = Standing::undecided;
     } else {
       const double height =

@@ -372,7 +372,7 @@ Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver
 
   const bool more = source.has_extent ? is_point : !left;
   const SampleSets sets = sets_of(effort * (more ? source.effort : 1) * source.samples, is_point);
-  // So few rays are sooner traced than they are found to be free. At points free light has no error.
+  // Few rays cost less than the test for free sight. At points, light without shadows has no error.
   const bool is_worth_asking = source.may_be_hidden && (is_point || sets.samples() > 16);
   const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
   const auto [arriving, missed] = replicates_by(source, receiver, key, sets, in_shadow);

@@ -284,7 +284,7 @@ std::vector<LampFace> ranked_faces(const Scene& scene) {
   std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
   std::vector<LampFace> ranked;
   for (const Emitter& emitter : emitters) {
-    if (ranked.size() + emitter.faces.size() > 256) break;
+    if (ranked.size() + emitter.faces.size() > 256) break;  // the cost grows with faces times mirrors
     ranked.insert(ranked.end(), emitter.faces.begin(), emitter.faces.end());
   }
   return ranked;

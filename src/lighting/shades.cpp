@@ -194,7 +194,7 @@ std::optional<Spectrum> Halving::lit_in_halves(const PlanarOutline& region, cons
     for (const Shade& shade : shades)
       there.push_back({left_of(shade.outline, box.center(), along), shade.transmittance});
     cuts += shades.size();
-    if (cuts > 6000) return std::nullopt;
+    if (cuts > 6000) return std::nullopt;  // sampling is cheaper
     const auto lit_there = lit(left_of(region, box.center(), along), there, depth + 1);
     if (!lit_there) return std::nullopt;
     sum += *lit_there;
@@ -427,7 +427,7 @@ std::optional<Shades::Shadows> Shades::shadows_on(const Receiver& patch, const L
       shadows.of_panes.clear();
       return shadows;
     }
-    if (shadows.all.size() > shadows.covers.size() + 1500) return std::nullopt;
+    if (shadows.all.size() > shadows.covers.size() + 1500) return std::nullopt;  // likewise
   }
   return shadows;
 }

@@ -222,7 +222,7 @@ std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths) {
     if (is_opening(scene, p)) openings.push_back(opening_at(scene, p));
   }
   for (Opening& hole : shining_holes(scene, paths)) {
-    // A hole adds little where most of its lit lines pass other openings.
+    // A hole adds little if 95 % of its lit lines pass other openings.
     if (share_apart(hole, paths, openings) > 0.05) openings.push_back(std::move(hole));
   }
   return openings;

@@ -28,11 +28,10 @@ Opening opening_at(const Scene& scene, PolygonIndex polygon);
 /// Places that see more than this share of the sky find it without aiming at openings.
 inline constexpr double much_sky = 0.25;
 
-/// All clear faces, in the order of their polygons, and then of holes_between_faces() those through which the sky
-/// shines at places that see less of it than that: of the 256 through which most straight lines get in, those that let
-/// in light which passes no opening before them. Gaps between furniture behind a window, and the other holes of its
-/// frame, say nothing more of the sky. Where there are more holes, all of one plane are one first. Found by rays; that
-/// a hole is missed costs accuracy alone.
+/// All clear faces, in the order of their polygons. Then up to 256 of holes_between_faces(): those that let in most
+/// straight lines from the sky to places that see less than `much_sky` of it. A hole whose light passes another opening
+/// is left out, e.g. a gap between furniture behind a window. If there are too many holes, those of one plane are
+/// merged first. Rays find the holes; a missed hole costs accuracy only.
 std::vector<Opening> sky_openings(const Scene& scene, const LightPaths& paths);
 
 /// The place of the first hole among sky_openings().

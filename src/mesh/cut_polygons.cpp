@@ -144,7 +144,7 @@ struct GapClass {
   double widest;  // meters; 0: they touch
 };
 
-// The ones with a gap that patches of this detail are wider than.
+// The ones whose gap is at most a quarter of the size of the patches, `detail`.
 std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<ContactLine>& contacts, double detail) {
   std::vector<double> gaps;
   for (const ContactLine& line : contacts) {
@@ -160,13 +160,13 @@ std::vector<GapClass> by_gap(const FlatOutline& outline, const std::vector<Conta
   return classes;
 }
 
-// Are lines worth others beside them?
+// True for lines long enough that the light under them matters: the gap's area is 0.75 % of a patch or more.
 bool are_long(const std::vector<FlatLine>& lines, double gap, double detail) {
   return length_of(lines) * gap >= 0.0075 * detail * detail;
 }
 
-// Light that gets under an edge fades over some widths of the gap: one and three of them from the edge there are lines
-// as well, where patches would be wider and the edge is long enough for it to matter.
+// Light that gets under an edge fades over a few widths of the gap. Lines one and three widths from the edge resolve
+// this, if the edge is long and the lines stay within 7.5 % of a patch.
 std::vector<FlatLine> lines_beside_gap(const std::vector<FlatLine>& edges, double grid, double gap, double detail) {
   if (!are_long(edges, gap, detail)) return {};
   std::vector<FlatLine> beside;
@@ -191,7 +191,7 @@ CutPolygon cut_polygon(std::vector<Point> corners, const Vector& normal, const s
   const FlatOutline outline(cut.corners, normal, grid);
   std::vector<FlatLine> lines;
   for (const GapClass& gap : by_gap(outline, contacts, detail)) {
-    const double tolerance = 0.01 * detail;
+    const double tolerance = 0.01 * detail;  // lines may move by 1 % of a patch
     // Farther away than four times its size the shadow of a line has no edge.
     const double least_size = std::max(16 * tolerance, 4 * gap.widest);
     if (size_of(gap.lines) < least_size || !matters(outline, gap, detail)) continue;

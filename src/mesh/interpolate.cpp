@@ -196,7 +196,7 @@ Field mean_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fiel
     double areas = 0;
     for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
       for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.normal[i].dot(mesh.normal[j]) < 0.9) continue;
+        if (mesh.normal[i].dot(mesh.normal[j]) < 0.9) continue;  // over 26 degrees: an edge of the shape
         sum += area[j] * values.row(j);
         areas += area[j];
       }

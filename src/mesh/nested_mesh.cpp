@@ -275,6 +275,7 @@ Refinement refine(const PatchMesh& mesh, std::span<const std::uint8_t> marked) {
 
 PatchMesh refine(const PatchMesh& mesh) { return refine(mesh, std::vector<std::uint8_t>(mesh.size(), 1)).mesh; }
 
+// Edges below a quarter of the longest stay whole.
 std::size_t parts_of_parent(double edge, double longest) { return edge >= 0.25 * longest ? 4 : 1; }
 
 NestedMesh nest(PatchMesh parents, double usual_edge) {

@@ -438,7 +438,7 @@ bool Triangulation::make_edge(VertexHandle from, VertexHandle to) {
   return made.is_valid();
 }
 
-// Every part of a line that can be becomes an edge; over the others patches reach as they do without.
+// Inserts each part of a line as an edge if possible; elsewhere patches cross the line.
 void Triangulation::insert_lines(std::span<const std::vector<FlatPoint>> lines) {
   if (lines.empty()) return;
   std::map<std::array<double, 2>, std::vector<VertexHandle>> vertices;

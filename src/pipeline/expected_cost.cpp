@@ -6,7 +6,7 @@
 #include "base/sampling.h"
 #include "lighting/direct_irradiance.h"
 #include "pipeline/problem_of.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "plan/planned_scene.h"
 #include "transport/pair_sampler.h"
 #include "visibility/occluder.h"
@@ -44,8 +44,8 @@ double find(const ClusterPairs& pairs, const ClusterPair& pair) {
   return sum;
 }
 
-// Processor seconds that assemble_exchange_areas() is expected to take with the automatic estimator: those of some
-// hundred pairs of clusters, chosen at random, times the number of all. Takes a tenth of a second or less.
+// Processor seconds that assemble_exchange_areas() is expected to take with the automatic estimator: those of
+// up to 1024 random pairs of clusters, scaled to the number of all pairs. Takes at most about 2 processor seconds.
 double expected_assembly_seconds(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options) {
   const ClusterPairs pairs(mesh, occluder, options);
   const std::size_t clusters = pairs.clusters().size();

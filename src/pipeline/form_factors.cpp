@@ -7,7 +7,7 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/run.h"
 #include "plan/check_request.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "transport/closure.h"
 #include "transport/ray_rows.h"
 

@@ -4,8 +4,8 @@
 #include "base/rounded.h"
 #include "base/sampling.h"
 #include "mesh/nested_mesh.h"
+#include "plan/choose_storage.h"
 #include "plan/goal.h"
-#include "plan/memory.h"
 
 #include <algorithm>
 #include <bit>

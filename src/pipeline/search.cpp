@@ -13,7 +13,7 @@
 #include "pipeline/radiosity_errors.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +67,8 @@ Plan with_rays_of(const LocalCuts& cuts, Plan plan) {
 // Cuts that leave a relative error, by the errors of the mesh before, which allow a limited growth at once, and no more
 // than time and memory do: the last mesh could be solved so many `times` in the time that is left.
 std::optional<LocalCuts> cuts_that_fit(const SolvedMesh& solved, const AccuracyStep& step, double error, double times) {
-  // Both patches and rays make a mesh dearer.
+  // Both patches and rays raise the cost. The errors of one mesh are trusted for at most four times the patches and
+  // three times the rays; growth below 10 % does not pay for another mesh.
   double growth = std::min(3.0, std::sqrt(std::max(0.0, times)) - 1);
   for (; growth > 0.1; growth /= 2) {
     const double more_rays = std::min(2.0, growth);

@@ -174,7 +174,7 @@ Diagnostics notes_on_fine_outlines(const Scene& scene, const KeptSides& sides, s
 
 Diagnostics notes_on_luminaires_behind(const Scene& scene) {
   Diagnostics notes;
-  const double nearest = Tolerances(extent_of(scene)).in_plane;
+  const double nearest = tolerance_of_shapes * extent_of(scene);
   for (const Luminaire& luminaire : scene.luminaires) {
     for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
       const Vector normal = front_normal(scene, p);

@@ -4,9 +4,9 @@
 
 #include "mesh/mesher.h"
 #include "plan/check_request.h"
+#include "plan/choose_storage.h"
 #include "plan/decide.h"
 #include "plan/goal.h"
-#include "plan/memory.h"
 #include "plan/notes.h"
 #include "plan/planned_lines.h"
 #include "plan/survey.h"

@@ -147,7 +147,7 @@ Diagnostics problems_of_cut_ones(const Scene& scene) {
   std::size_t count = 0;
   std::string first;
   std::optional<BoxRow> row;
-  const double rounding = Tolerances(extent_of(scene)).weld;  // a sphere that touches a face is not cut
+  const double rounding = tolerance_of_coordinates * extent_of(scene);  // a sphere that touches a face is not cut
   for (const Luminaire& luminaire : scene.luminaires) {
     const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
     if (sphere == nullptr) continue;

@@ -20,9 +20,9 @@
 namespace patchlight {
 namespace {
 
-// The bodies of some models (gbXML) end at the inner sides of walls and ceilings whose faces stand in the middle of
-// these: of a room that is not bounded all around, patches count as well that bound no room and face it from farther
-// off, meters.
+// In some models (gbXML) room bodies end at the inner sides of walls, but the faces stand in the middle of the walls. A
+// room that is not bounded all around therefore also gets patches that face it from these distances, meters, and bound
+// no other room.
 constexpr std::array<double, 5> farther_off = {0.1, 0.2, 0.3, 0.4, 0.5};
 
 // A patch bounds a room when the room is before it and not behind it: furniture stands in the room.

@@ -78,9 +78,8 @@ struct ContactSearch {
             convex,  kept.front[polygon] != 0, kept.back[polygon] != 0};
   }
 
-  // Is the edge after this corner one over which the face goes on, as another one has it that lies to its other side?
-  // Then no shadow ends there. Where the edge touches the ground light does not pass below it, unless both faces lie on
-  // it.
+  // True if another face continues this one beyond the edge after this corner: then no shadow ends there. Light does
+  // not pass below an edge that touches the ground, unless both faces lie on it.
   bool goes_on(const Ground& ground, PolygonIndex face, std::size_t corner, bool touches) const {
     const auto& corners = scene.polygons[face].corners;
     const auto [low, high] = std::minmax(corners[corner], corners[(corner + 1) % corners.size()]);

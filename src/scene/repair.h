@@ -6,7 +6,7 @@ namespace patchlight {
 
 /// Makes a scene that a reader has put together fit for meshing. Defects of its shape are fixed or left out, and
 /// reported in Scene::diagnostics. In this order:
-/// - vertices at one place become one (see welded_vertices in scene/weld.h for how near that is);
+/// - vertices at one place become one (see weld_distance() in scene/extent.h);
 /// - corners that repeat the one before, and spikes out and back, are left out;
 /// - faces without area, narrower than vertices are welded, are left out;
 /// - faces whose outline crosses itself are cut at the crossings; a seam to a hole, walked along both ways, is none;

@@ -85,7 +85,7 @@ struct FacesUnderRims {
     return outline.size() >= 3 && !is_narrow(outline, near) && !crosses_itself(outline) && is_closed(outline, shell);
   }
 
-  // The corners from `first` on, as many as lie in one plane, when faces fill the polygon that they are.
+  // The corners from `first` on, as many as lie in one plane, if faces fill this polygon.
   std::optional<std::vector<Point>> closed_run(const std::vector<Point>& outline, std::size_t first,
                                                PolygonIndex shell) const {
     std::vector<Point> run;

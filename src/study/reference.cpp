@@ -6,7 +6,7 @@
 #include "mesh/nested_mesh.h"
 #include "mesh/patch_lookup.h"
 #include "pipeline/first_mesh.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "solve/scattering.h"
 #include "study/study.h"
 

@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/vectors.h"
 #include "plan/check_request.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 
 #include <algorithm>
 #include <cmath>

@@ -217,8 +217,8 @@ Samples shuffled_samples(std::uint32_t count, std::uint32_t seed) {
   return shuffled;
 }
 
-// One for each vertex. Where few of the paths are left, strata say nothing any more: their numbers are independent, and
-// cost no more than these paths do, however long some are.
+// One sample per vertex. If few of the paths remain, strata no longer reduce the variance: then the samples are
+// independent, and cost no more than these paths.
 Samples samples_at(const std::vector<Vertex>& vertices, std::uint32_t paths, std::uint32_t seed) {
   Samples samples(vertices.size());
   if (8 * vertices.size() < paths) {
@@ -344,7 +344,7 @@ Spectrum PathTracer::light_from_sources(const std::vector<Vertex>& vertices, con
   std::vector<Spectrum> unoccluded;
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Vertex& vertex = vertices[k];
-    if (step.asked < 1 && uniform({step.seed, vertex.path, stream::path_survives}) >= step.asked) continue;
+    if (step.asked < 1 && uniform({step.seed, vertex.path, stream::vertex_sends_shadow_rays}) >= step.asked) continue;
     const Eigen::Vector2d on_luminaire(samples[k][0], samples[k][1]);
     for (const LightSample& light : sources_.sample(
              {vertex.point, vertex.normal}, uniform({step.seed, vertex.path, stream::path_luminaire}), on_luminaire)) {
@@ -438,6 +438,7 @@ std::uint64_t PathTracer::rays_of(std::size_t count, double asked) const {
 
 Batch PathTracer::trace(std::vector<Vertex> vertices, std::uint32_t paths, std::uint64_t seed) const {
   Batch batch{Spectrum::Zero(bands()), static_cast<std::uint32_t>(vertices.size())};
+  // Lengths 0 and 1 would repeat the streams path_starts and exposed_points.
   for (std::uint64_t length = 2; !vertices.empty(); ++length) {
     const std::uint32_t seed_here = hash({seed, length});
     const Samples samples = samples_at(vertices, paths, seed_here);

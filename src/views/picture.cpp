@@ -9,7 +9,7 @@
 #include "lighting/mirrored_irradiance.h"
 #include "lighting/sky_openings.h"
 #include "pipeline/world.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "plan/planned_scene.h"
 #include "render/camera.h"
 #include "render/final_gather.h"

@@ -106,12 +106,12 @@ void TracedFaces::build(TriangleScene& target, const Scene& scene, const std::ve
   rtcCommitScene(target.scene);
 }
 
-// Whether clear polygons let light through.
-bool lets_through(Occluder::Blockers which) {
+// True if both opaque and clear polygons block.
+bool has_both_kinds(Occluder::Blockers which) {
   return which != Occluder::Blockers::opaque && which != Occluder::Blockers::clear;
 }
 
-// Those left out, and besides all clear polygons, or all others.
+// Leaves out all clear polygons as well, or all opaque ones.
 std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const Scene& scene, bool clear) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     if (is_opening(scene, p) == clear) left_out[p] = 1;
@@ -122,12 +122,12 @@ std::vector<std::uint8_t> without_kind(std::vector<std::uint8_t> left_out, const
 std::vector<std::uint8_t> left_out_by(Occluder::Blockers which, const Scene& scene) {
   if (which == Occluder::Blockers::inside_hull) return on_convex_hull(scene);
   std::vector<std::uint8_t> left_out(scene.polygons.size(), which == Occluder::Blockers::none ? 1 : 0);
-  return lets_through(which) ? left_out : without_kind(left_out, scene, which == Occluder::Blockers::opaque);
+  return has_both_kinds(which) ? left_out : without_kind(left_out, scene, which == Occluder::Blockers::opaque);
 }
 
 // The polygons that rays ignore: those of the other kind, if only one kind is requested.
 std::vector<std::uint8_t> never_met(Occluder::Blockers which, const Scene& scene) {
-  return left_out_by(lets_through(which) ? Occluder::Blockers::all : which, scene);
+  return left_out_by(has_both_kinds(which) ? Occluder::Blockers::all : which, scene);
 }
 
 RTCIntersectContext new_context() {

@@ -2,7 +2,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/simulate.h"
 
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "support/scenes.h"
 
 #include <algorithm>

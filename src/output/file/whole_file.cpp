@@ -82,7 +82,7 @@ void remove_left(const fs::path& folder) {
 enum class Kind { file, folder };
 
 // An empty file or folder beside `target`, locked as long as this lives: an unlocked one was left by a run that was
-// killed. Gone at the end, unless it was renamed.
+// killed. The destructor removes the file or folder that has the temporary name: after an exchange, the older one.
 class Temporary {
  public:
   // `known` is the name that the user knows. \throws OutputError.

@@ -154,7 +154,7 @@ TEST_F(Gbxml, WhatIsNotStatedIsSaidAndAirIsOpen) {
   EXPECT_THROW(named(scene, "gap"), std::runtime_error);
   EXPECT_THROW(named(scene, "glazed"), std::runtime_error);  // the window takes all of it
   EXPECT_NEAR(area_of(scene, "all"), 9, 1e-12);
-  EXPECT_TRUE(any_contains(scene.diagnostics, "have 0.7: OperableWindow"));
+  EXPECT_TRUE(any_contains(scene.diagnostics, "get 0.7: OperableWindow"));
   EXPECT_TRUE(any_contains(scene.diagnostics, "open, left out: 1 (gap)"));
 }
 

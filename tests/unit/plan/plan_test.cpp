@@ -4,7 +4,7 @@
 
 #include "mesh/mesher.h"
 #include "mesh/nested_mesh.h"
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 #include "support/diagnostics_of.h"
 #include "support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "views/observers.h"
+#include "views/glare.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "views/observers.h"
+#include "views/glare.h"
 
 #include "patchlight/views/picture.h"
 #include "patchlight/views/views.h"

@@ -1,4 +1,4 @@
-#include "plan/memory.h"
+#include "plan/choose_storage.h"
 
 #include "patchlight/base/error.h"
 #include "patchlight/scene/sides.h"
