@@ -95,6 +95,7 @@ struct Diagnostic {
   double area = 0;                    ///< m^2 of the faces, as far as their corners are known
 };
 
+/// Findings in the order in which they were made.
 using Diagnostics = std::vector<Diagnostic>;
 
 /// "self_intersecting" and so on.
@@ -106,8 +107,10 @@ std::optional<DiagnosticCode> diagnostic_code(std::string_view name);
 /// True for findings that can make all results wrong. Commands warn of them, with --quiet too.
 bool makes_results_wrong(DiagnosticCode code);
 
-/// How grave findings of a code are, and whether they are notes.
+/// How grave findings of a code are.
 Severity severity_of(DiagnosticCode code);
+
+/// True for codes of Severity::note.
 bool is_note(DiagnosticCode code);
 
 /// "error", "warning", "remark" or "note".

@@ -73,8 +73,10 @@ const char* name_of(Projection projection);
 /// The projection of that name; nothing for other names.
 std::optional<Projection> projection_named(const std::string& name);
 
-/// The default and the largest vertical field of view of a camera, degrees. A perspective stays below the largest.
+/// The default vertical field of view of a camera, degrees.
 double usual_field_of_view(Projection projection);
+
+/// The largest vertical field of view of a camera, degrees. A perspective stays below it.
 double largest_field_of_view(Projection projection);
 
 /// The viewpoint of a picture.
@@ -155,8 +157,10 @@ Bands bands_of(const Scene& scene);
 /// The diagnostics that cannot make all results wrong.
 Diagnostics remarks_of(const Scene& scene);
 
-/// The corner points of a polygon, or of an outline of vertices.
+/// The corner points of a polygon.
 std::vector<Point> corner_points(const Scene& scene, PolygonIndex polygon);
+
+/// The corner points of an outline of vertices.
 std::vector<Point> corner_points(const Scene& scene, std::span<const std::uint32_t> outline);
 
 /// The area of a polygon, m^2.
