@@ -15,10 +15,7 @@
 #include "plan/choose_storage.h"
 #include "plan/planned_scene.h"
 
-#include <memory>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

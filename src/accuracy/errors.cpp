@@ -1,6 +1,5 @@
 #include "accuracy/errors.h"
 
-#include "patchlight/accuracy/error_bars.h"
 #include "patchlight/solve/solve.h"
 
 #include "accuracy/refinement.h"
@@ -11,8 +10,6 @@
 #include "base/vectors.h"
 #include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
-#include "mesh/nested_mesh.h"
-#include "solve/scattering.h"
 #include "transport/random_errors.h"
 
 #include <Eigen/Cholesky>
@@ -20,11 +17,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -2,15 +2,11 @@
 
 #include "patchlight/solve/solve.h"
 
-#include "accuracy/errors.h"
 #include "base/vectors.h"
-#include "mesh/nested_mesh.h"
 #include "solve/scattering.h"
 #include "transport/closure.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace patchlight {

@@ -15,12 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <set>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -14,10 +14,8 @@
 #include "visibility/occluder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <utility>
 

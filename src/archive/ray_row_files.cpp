@@ -21,12 +21,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <sstream>
-#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>

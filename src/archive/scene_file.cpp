@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/output/write_result.h"
-#include "patchlight/scene/scene.h"
 
 #include "archive/file_names.h"
 #include "archive/json_values.h"

@@ -9,7 +9,6 @@
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <variant>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <boost/random/sobol.hpp>
-#include <cmath>
 #include <numbers>
 
 namespace patchlight {

@@ -1,7 +1,6 @@
 #include "cli/arguments.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/input/read_scene.h"
 #include "patchlight/output/write_result.h"
 
 #include "base/near_match.h"
@@ -16,13 +15,11 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 namespace patchlight::cli {
 namespace {

@@ -28,7 +28,6 @@
 #include <iostream>
 #include <set>
 #include <sstream>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cassert>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <string_view>
 #include <sys/time.h>
 #include <unistd.h>
 

@@ -11,7 +11,6 @@
 #include <exception>
 #include <iostream>
 #include <new>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <variant>

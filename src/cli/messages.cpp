@@ -10,7 +10,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <iostream>
-#include <string>
 #include <unistd.h>
 
 namespace patchlight::cli {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <vector>
 
 namespace patchlight::cli {
 namespace {

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <regex>
 #include <tuple>
-#include <utility>
 
 namespace patchlight::cli {
 namespace {

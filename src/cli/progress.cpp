@@ -2,12 +2,8 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/parallel.h"
-#include "cli/messages.h"
-
 #include <cmath>
 #include <iostream>
-#include <string>
 #include <unistd.h>
 #include <utility>
 

@@ -26,10 +26,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <iostream>
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

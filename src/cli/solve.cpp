@@ -29,7 +29,6 @@
 #include <deque>
 #include <filesystem>
 #include <iostream>
-#include <string>
 #include <utility>
 #include <vector>
 

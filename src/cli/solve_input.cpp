@@ -3,7 +3,6 @@
 #include "patchlight/base/error.h"
 
 #include "archive/form_factor_files.h"
-#include "archive/ray_row_files.h"
 #include "archive/scene_file.h"
 #include "input/tables/read_tables.h"
 #include "input/text.h"
@@ -15,7 +14,6 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 namespace patchlight::cli {
 namespace {

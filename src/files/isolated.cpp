@@ -4,20 +4,15 @@
 
 #include "files/reason.h"
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 #include <exception>
 #include <fcntl.h>
-#include <filesystem>
 #include <fstream>
 #include <linux/filter.h>
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
-#include <string_view>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -25,8 +20,6 @@
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -1,8 +1,5 @@
 #include "patchlight/gather/gather.h"
 
-#include "patchlight/base/field.h"
-#include "patchlight/mesh/patch_mesh.h"
-
 #include "base/parallel.h"
 #include "base/tolerances.h"
 #include "gather/sources.h"
@@ -15,11 +12,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <span>
-#include <vector>
 
 namespace patchlight {
 namespace {

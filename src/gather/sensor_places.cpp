@@ -4,18 +4,15 @@
 #include "base/tolerances.h"
 #include "scene/extent.h"
 #include "scene/shells.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -11,16 +11,12 @@
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <numbers>
 #include <numeric>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -9,12 +9,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <stb/stb_image.h>
 #include <utility>
 

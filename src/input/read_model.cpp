@@ -2,7 +2,6 @@
 
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
-#include "patchlight/scene/scene.h"
 
 #include "base/near_match.h"
 #include "files/sha256.h"
@@ -13,9 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <filesystem>
 #include <map>
-#include <string_view>
 #include <system_error>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "patchlight/input/read_scene.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/scene.h"
 
 #include "base/rounded.h"
 #include "files/sha256.h"
@@ -24,8 +23,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <string>
 #include <utility>
 
 namespace patchlight {

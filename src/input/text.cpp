@@ -3,12 +3,10 @@
 #include "patchlight/base/error.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <istream>
-#include <system_error>
 
 namespace patchlight {
 namespace {

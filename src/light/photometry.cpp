@@ -1,7 +1,5 @@
 #include "light/photometry.h"
 
-#include "patchlight/light/spectrum.h"
-
 #include "base/tolerances.h"
 #include "light/spectra.h"
 

@@ -3,7 +3,6 @@
 #include "light/photometry.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>

@@ -17,7 +17,6 @@
 #include <numeric>
 #include <optional>
 #include <variant>
-#include <vector>
 
 namespace patchlight {
 namespace {

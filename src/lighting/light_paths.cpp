@@ -3,8 +3,6 @@
 #include "scene/specular_faces.h"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
 namespace patchlight {
 

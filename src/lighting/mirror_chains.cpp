@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
-#include <optional>
 #include <set>
 #include <utility>
 #include <variant>

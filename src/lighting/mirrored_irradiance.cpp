@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
-#include <span>
 #include <utility>
 #include <vector>
 

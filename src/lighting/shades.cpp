@@ -6,11 +6,8 @@
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <numbers>
 #include <optional>
-#include <vector>
 
 namespace patchlight {
 namespace {

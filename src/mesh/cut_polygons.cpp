@@ -3,18 +3,13 @@
 #include "base/parallel.h"
 #include "base/tolerances.h"
 #include "mesh/noded_lines.h"
-#include "mesh/outline.h"
 #include "scene/extent.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <map>
-#include <optional>
-#include <span>
 #include <utility>
 
 namespace patchlight {

@@ -1,26 +1,21 @@
 #include "mesh/mesher.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/mesh/patch_mesh.h"
-#include "patchlight/scene/sides.h"
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
 #include "mesh/cut_polygons.h"
-#include "mesh/outline.h"
 #include "mesh/polygon_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 

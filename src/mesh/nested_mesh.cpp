@@ -4,11 +4,9 @@
 #include "mesh/outline.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <boost/polygon/polygon.hpp>
 #include <boost/polygon/segment_utils.hpp>
 #include <cmath>
@@ -14,9 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

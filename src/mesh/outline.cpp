@@ -4,12 +4,9 @@
 #include "scene/simple_polygon.h"
 #include "scene/triangulate.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <span>
-#include <utility>
 
 namespace patchlight {
 

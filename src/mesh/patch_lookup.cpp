@@ -3,7 +3,6 @@
 #include "base/tolerances.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -3,10 +3,8 @@
 #include "patchlight/transport/lost_share.h"
 
 #include "mesh/mesher.h"
-#include "mesh/nested_mesh.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cstdint>

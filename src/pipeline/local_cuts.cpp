@@ -3,7 +3,6 @@
 #include "accuracy/refinement.h"
 #include "base/rounded.h"
 #include "base/sampling.h"
-#include "mesh/nested_mesh.h"
 #include "plan/choose_storage.h"
 #include "plan/goal.h"
 

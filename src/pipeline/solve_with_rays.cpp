@@ -8,7 +8,6 @@
 #include "form_factor/patch_shape.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
-#include "solve/scattering.h"
 #include "transport/smoothing.h"
 
 #include <algorithm>

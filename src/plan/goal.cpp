@@ -7,7 +7,6 @@
 #include "base/vectors.h"
 #include "mesh/nested_mesh.h"
 #include "plan/survey.h"
-#include "scene/coverings.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>

@@ -15,7 +15,6 @@
 
 #include <memory>
 #include <pybind11/stl.h>
-#include <string>
 #include <vector>
 
 namespace patchlight {

@@ -1,7 +1,6 @@
 #include "render/camera.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/scene/scene.h"
 
 #include "base/sampling.h"
 #include "base/streams.h"

@@ -3,7 +3,6 @@
 #include "base/rounded.h"
 #include "base/tolerances.h"
 #include "light/photometry.h"
-#include "scene/photometric_web.h"
 
 #include <algorithm>
 #include <array>

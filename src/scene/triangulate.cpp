@@ -3,7 +3,6 @@
 #include "base/tolerances.h"
 #include "scene/face_tree.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>

@@ -6,7 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>

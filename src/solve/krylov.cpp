@@ -4,10 +4,7 @@
 
 #include <Eigen/QR>
 #include <cstddef>
-#include <functional>
 #include <optional>
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace patchlight {

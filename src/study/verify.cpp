@@ -19,15 +19,11 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

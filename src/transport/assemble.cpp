@@ -16,7 +16,6 @@
 #include <functional>
 #include <map>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "base/vectors.h"
-#include "mesh/nested_mesh.h"
 #include "transport/tiles.h"
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include <numeric>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 

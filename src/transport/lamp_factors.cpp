@@ -3,8 +3,6 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
-#include "form_factor/pair_samples.h"
-#include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "scene/triangulate.h"
 #include "visibility/occluder.h"
@@ -12,7 +10,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 
 namespace patchlight {

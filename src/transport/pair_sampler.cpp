@@ -5,19 +5,13 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/tolerances.h"
-#include "form_factor/pair_samples.h"
-#include "form_factor/patch_shape.h"
 #include "form_factor/point_polygon.h"
 #include "transport/tiles.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -8,10 +8,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstddef>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

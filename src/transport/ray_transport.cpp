@@ -6,8 +6,6 @@
 #include "base/target_clones.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <map>
 #include <span>
 #include <utility>

@@ -4,8 +4,6 @@
 #include "base/streams.h"
 #include "form_factor/patch_shape.h"
 #include "scene/specular_faces.h"
-#include "transport/sights.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cassert>

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace patchlight {

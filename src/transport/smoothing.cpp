@@ -6,13 +6,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace patchlight {
 namespace {

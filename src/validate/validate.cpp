@@ -20,7 +20,6 @@
 #include <numbers>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 namespace patchlight::validation {
 namespace {

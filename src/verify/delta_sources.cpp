@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <vector>
 
 namespace patchlight {
 namespace {

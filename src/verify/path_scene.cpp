@@ -1,17 +1,13 @@
 #include "verify/path_scene.h"
 
-#include "base/sampling.h"
 #include "base/streams.h"
 #include "light/texture.h"
 #include "scene/coverings.h"
-#include "scene/specular_faces.h"
 #include "verify/path_tracer.h"
-#include "visibility/occluder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace patchlight {

@@ -16,8 +16,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <span>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -4,7 +4,6 @@
 #include "patchlight/views/views.h"
 
 #include "light/photometry.h"
-#include "lighting/lighting.h"
 #include "lighting/sky.h"
 #include "pipeline/exchange_and_light.h"
 #include "pipeline/world.h"

@@ -4,7 +4,6 @@
 #include "base/tolerances.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace patchlight {

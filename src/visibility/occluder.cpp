@@ -1,19 +1,13 @@
 #include "visibility/occluder.h"
 
-#include "patchlight/scene/scene.h"
-
 #include "base/sampling.h"
-#include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/triangulate.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cstddef>
-#include <cstdint>
 #include <embree3/rtcore.h>
 #include <limits>
 #include <mutex>
@@ -22,7 +16,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -15,7 +15,6 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>

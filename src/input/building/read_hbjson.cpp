@@ -18,7 +18,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 

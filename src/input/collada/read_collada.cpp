@@ -26,7 +26,6 @@
 #include <optional>
 #include <pugixml.hpp>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -7,23 +7,17 @@
 #include "input/text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <draco/compression/decode.h>
 #include <limits>
-#include <map>
-#include <memory>
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <tiny_gltf.h>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

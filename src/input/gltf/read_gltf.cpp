@@ -16,7 +16,6 @@
 #include <functional>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -19,8 +19,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <unistd.h>

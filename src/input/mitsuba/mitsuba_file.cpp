@@ -8,10 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <system_error>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -19,7 +19,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <system_error>
 #include <tuple>
 #include <utility>

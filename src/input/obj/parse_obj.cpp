@@ -8,9 +8,7 @@
 
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
-#include <span>
 #include <sstream>
 #include <tiny_obj_loader.h>
 #include <utility>

@@ -14,14 +14,11 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
-#include <string>
 #include <tiny_obj_loader.h>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

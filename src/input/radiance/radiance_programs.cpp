@@ -1,7 +1,6 @@
 #include "input/radiance/radiance_programs.h"
 
 #include "patchlight/base/error.h"
-#include "patchlight/base/geometry.h"
 
 #include "input/round_shapes.h"
 #include "input/text.h"

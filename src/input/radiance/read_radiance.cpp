@@ -19,7 +19,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>

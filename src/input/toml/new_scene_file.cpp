@@ -7,17 +7,14 @@
 #include "input/toml/toml_sensors.h"
 #include "input/toml/toml_value.h"
 #include "scene/room_body.h"
-#include "scene/sensor_grid.h"
 #include "scene/solids.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <set>
 #include <sstream>
-#include <string>
 #include <utility>
 
 namespace patchlight {

@@ -8,9 +8,7 @@
 #include "input/toml/toml_value.h"
 
 #include <cmath>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace patchlight {
 namespace {

@@ -10,7 +10,6 @@
 #include "input/text.h"
 #include "scene/extent.h"
 #include "scene/room_body.h"
-#include "scene/solids.h"
 
 #include <algorithm>
 #include <limits>

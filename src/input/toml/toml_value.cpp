@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <string_view>
 #include <toml++/toml.h>
 
 namespace patchlight {

@@ -6,7 +6,6 @@
 #include "output/plot/write_plot.h"
 #include "output/report/report_json.h"
 #include "output/vtk/write_vtk.h"
-#include "study/study.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,4 @@
 #include "patchlight/gather/readings.h"
-#include "patchlight/scene/sensor.h"
 
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
@@ -9,11 +8,7 @@
 #include <cassert>
 #include <filesystem>
 #include <iomanip>
-#include <optional>
-#include <span>
 #include <sstream>
-#include <string>
-#include <vector>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
