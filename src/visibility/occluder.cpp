@@ -334,11 +334,11 @@ TracingFrame Occluder::frame() const { return {tracer_->faces->centre, tracer_->
 Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings, Reflections reflections)
     : tracer_(std::make_unique<Tracer>(
           scene, blockers, std::make_shared<const TracedFaces>(scene, never_met(blockers, scene), std::move(coverings)),
-          lets_through(blockers) ? SpecularFaces(scene, reflections) : SpecularFaces())) {}
+          has_both_kinds(blockers) ? SpecularFaces(scene, reflections) : SpecularFaces())) {}
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, const Occluder& like)
     : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces, like.tracer_->specular)) {
-  assert(lets_through(blockers));
+  assert(has_both_kinds(blockers));
 }
 Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder&&) noexcept = default;
