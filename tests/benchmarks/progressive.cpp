@@ -87,7 +87,7 @@ struct Shown {
   double error_without_ambient = 0;
 };
 
-struct Run {
+struct SolverRun {
   Solver solver;
   std::vector<Shown> shown;
 };
@@ -122,17 +122,17 @@ const Shown& at(const std::vector<Shown>& all, double share) {
   return after == all.begin() ? *after : *(after - 1);
 }
 
-void print_table(const Room& room, const Reference& reference, const std::vector<Run>& runs) {
+void print_table(const Room& room, const Reference& reference, const std::vector<SolverRun>& runs) {
   const Eigen::Index lamps = (reference.problem.exitance > 0).rowwise().any().count();
   std::printf("%s: %u patches, %d of them lamps; all form factors %.2f CPU s, closure %.2f, solver %.2f\n\n",
               room.name.c_str(), room.mesh.size(), static_cast<int>(lamps), reference.assembly, reference.closure,
               reference.solve);
   std::printf("| rows |");
-  for (const Run& run : runs) std::printf(" %s | without ambient | CPU s |", name_of(run.solver));
+  for (const SolverRun& run : runs) std::printf(" %s | without ambient | CPU s |", name_of(run.solver));
   std::printf("\n|---|---|---|---|---|---|---|\n");
   for (const double share : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0}) {
     std::printf("| %.0f %% |", 100 * share);
-    for (const Run& run : runs) {
+    for (const SolverRun& run : runs) {
       const Shown& one = at(run.shown, share);
       std::printf(" %.1f %% | %.1f %% | %.2f |", 100 * one.error, 100 * one.error_without_ambient, one.cpu_seconds);
     }
@@ -141,10 +141,10 @@ void print_table(const Room& room, const Reference& reference, const std::vector
   std::printf("\n");
 }
 
-void write_csv(const std::filesystem::path& file, const std::vector<Run>& runs) {
+void write_csv(const std::filesystem::path& file, const std::vector<SolverRun>& runs) {
   std::ofstream stream(file);
   stream << "solver,rows,cpu_seconds,error,error_without_ambient\n";
-  for (const Run& run : runs) {
+  for (const SolverRun& run : runs) {
     for (const Shown& one : run.shown) {
       stream << name_of(run.solver) << ',' << one.rows << ',' << one.cpu_seconds << ',' << one.error << ','
              << one.error_without_ambient << '\n';
@@ -152,7 +152,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<Run>& runs) 
   }
 }
 
-Curve curve_of(const std::string& name, const Run& run, double Shown::*error) {
+Curve curve_of(const std::string& name, const SolverRun& run, double Shown::*error) {
   Curve curve{name, {}};
   for (const Shown& one : run.shown) curve.points.push_back({100 * one.rows, 100 * one.*error});
   return curve;
@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
     const Room room = room_of(argv[k], std::strtoul(argv[2], nullptr, 10));
     const Occluder occluder(room.scene, Occluder::Blockers::inside_hull, room.coverings);
     const Reference reference = reference_of(room, occluder);
-    std::vector<Run> runs;
+    std::vector<SolverRun> runs;
     for (const Solver solver : {Solver::progressive, Solver::overshooting}) {
       runs.push_back({solver, shown(room, occluder, solver, reference)});
       const std::string name = room.name + ", " + name_of(solver);
