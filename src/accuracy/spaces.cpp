@@ -10,11 +10,11 @@
 #include "base/vectors.h"
 #include "form_factor/patch_shape.h"
 #include "scene/room_body.h"
-#include "scene/shells.h"
 #include "scene/solids.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -100,20 +100,20 @@ bool divides(const Scene& scene, const Solid& solid, Dividing by) {
 
 // A shell, and the sides of its own polygons.
 struct Shell {
-  Solid solid;
+  const Solid& solid;
   std::vector<std::uint8_t> inner;  // at 2 * polygon + side: 0 not of the shell, 1 faces its inside, 2 its outside
 
   bool is_inside(const PatchMesh& mesh, PatchIndex i) const;
 };
 
-Shell shell_of(const Scene& scene, const Shells& shells, Solid solid) {
+Shell shell_of(const Scene& scene, const Shells& shells, const Solid& solid) {
   std::vector<std::uint8_t> inner(2 * scene.polygons.size(), 0);
   for (const PolygonIndex p : solid.polygons) {
     const auto side = static_cast<std::size_t>(inner_side(solid, shells, p));
     inner[2 * std::size_t{p} + side] = 1;
     inner[2 * p + 1 - side] = 2;
   }
-  return {std::move(solid), std::move(inner)};
+  return {solid, std::move(inner)};
 }
 
 bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
@@ -124,15 +124,16 @@ bool Shell::is_inside(const PatchMesh& mesh, PatchIndex i) const {
 
 }  // namespace
 
-Eigen::VectorXd inside_patches(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& enclosed) {
-  return enclosed.size() > 0 ? enclosed : inside_shells(scene, mesh, Dividing::with_openings);
+Eigen::VectorXd inside_patches(const Scene& scene, const KeptSides& sides, const PatchMesh& mesh,
+                               const Eigen::VectorXd& enclosed) {
+  return enclosed.size() > 0 ? enclosed : inside_shells(scene, sides, mesh, Dividing::with_openings);
 }
 
-Eigen::VectorXd inside_shells(const Scene& scene, const PatchMesh& mesh, Dividing by) {
-  const Shells shells = shells_of(scene);
+Eigen::VectorXd inside_shells(const Scene& scene, const KeptSides& sides, const PatchMesh& mesh, Dividing by) {
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(scene, sides);
   std::vector<Shell> dividing;
-  for (Solid& solid : closed_solids(scene, shells)) {
-    if (divides(scene, solid, by)) dividing.push_back(shell_of(scene, shells, std::move(solid)));
+  for (const Solid& solid : geometry->solids) {
+    if (divides(scene, solid, by)) dividing.push_back(shell_of(scene, geometry->shells, solid));
   }
   Eigen::VectorXd inside = Eigen::VectorXd::Zero(mesh.size());
   if (dividing.empty()) return inside;
@@ -217,19 +218,19 @@ Eigen::VectorXd interest_by_default(const Scene& scene, const PatchMesh& mesh, c
 
 }  // namespace
 
-Eigen::VectorXd interest_of(const Scene& scene, const PatchMesh& mesh, const std::vector<std::string>& names,
-                            const Eigen::VectorXd& enclosed) {
+Eigen::VectorXd interest_of(const Scene& scene, const KeptSides& sides, const PatchMesh& mesh,
+                            const std::vector<std::string>& names, const Eigen::VectorXd& enclosed) {
   if (names.empty()) return interest_by_default(scene, mesh, enclosed);
   const std::set<std::string> known = names_in(scene);
   std::vector<Interest> interests;
   for (const std::string& name : names) interests.push_back(interest_named(name, known));
-  const bool sides =
+  const bool by_side =
       std::any_of(interests.begin(), interests.end(), [](const Interest& i) { return i.is_inside.has_value(); });
-  const Eigen::VectorXd within = sides ? inside_shells(scene, mesh, Dividing::all) : Eigen::VectorXd();
+  const Eigen::VectorXd within = by_side ? inside_shells(scene, sides, mesh, Dividing::all) : Eigen::VectorXd();
   Eigen::VectorXd interest = Eigen::VectorXd::Zero(mesh.size());
   for (const Interest& one : interests) {
     const Eigen::VectorXd meant = meant_by(scene, mesh, one);
-    const bool by_shells = enclosed.size() == 0 || (sides && total(meant.cwiseProduct(within)) > 0);
+    const bool by_shells = enclosed.size() == 0 || (by_side && total(meant.cwiseProduct(within)) > 0);
     const Eigen::VectorXd& inner = by_shells ? within : enclosed;
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       if (meant[i] == 1 && (!one.is_inside || *one.is_inside == (inner[i] == 1))) interest[i] = 1;

@@ -9,6 +9,7 @@
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "scene/extent.h"
+#include "scene/solids.h"
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>
@@ -125,6 +126,7 @@ KeptSides sides_of(const PatchMesh& mesh, const Scene& scene) {
     sides.front.push_back(has(Side::front));
     sides.back.push_back(has(Side::back));
   }
+  sides.geometry = geometry_of(scene, sides);
   return sides;
 }
 

@@ -3,11 +3,12 @@
 #include "base/parallel.h"
 #include "base/tolerances.h"
 #include "scene/extent.h"
-#include "scene/shells.h"
+#include "scene/solids.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -117,7 +118,7 @@ struct Walls {
   const Occluder& occluder;
   std::span<const Facet> facets;
   TakingPart takes_part;
-  Shells shells;
+  const Shells& shells;
   std::vector<std::uint32_t> place;  // per vertex: the first one that is welded with it
   double tolerance = 0;              // meters
   std::vector<Point> lamps;          // a point on each
@@ -207,11 +208,13 @@ std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Facet> fa
 // Per point 1 when it is inside a wall, as place_sensors() has it.
 std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& sides, const Occluder& occluder,
                                        std::span<const Facet> facets, std::span<const Point> points) {
+  KeptSides automatic = kept_sides(scene, Sides::automatic);
+  const std::shared_ptr<const SceneGeometry> geometry = automatic.geometry;
   const Walls walls{scene,
                     occluder,
                     facets,
-                    {sides, kept_sides(scene, Sides::automatic)},
-                    shells_of(scene),
+                    {sides, std::move(automatic)},
+                    geometry->shells,
                     welded(scene.vertices, weld_distance(scene)),
                     tolerance_of_coordinates * extent_of(scene),
                     points_on_lamps(scene, facets)};

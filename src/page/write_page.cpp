@@ -13,13 +13,13 @@
 #include "output/report/write_study.h"
 #include "page/drawn_faces.h"
 #include "pipeline/world.h"
-#include "scene/shells.h"
 #include "scene/solids.h"
 #include "solve/scattering.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -190,12 +190,6 @@ std::vector<std::uint8_t> layers_of(const SolvedSurface& surface) {
   return layers;
 }
 
-// At 2 * polygon + side 1 for the sides that face the inside of a closed solid: these show where it is cut.
-std::vector<std::uint8_t> sides_in_solids(const Scene& scene) {
-  const Shells shells = shells_of(scene);
-  return inner_sides(scene, shells, closed_solids(scene, shells));
-}
-
 // At 1 the patches that no light gets to, nor comes from, as between walls.
 std::vector<std::uint8_t> dark_patches(const SolvedSurface& surface) {
   const PatchMesh& mesh = surface.simulation.mesh;
@@ -230,7 +224,10 @@ Json rows_part(const SolvedSurface& surface, const DrawnFaces& drawn) {
   using Number = std::uint32_t;
   const PatchMesh& mesh = surface.simulation.mesh;
   const Eigen::VectorXd& holds_light = surface.simulation.enclosed;
-  const std::vector<Byte> layers = layers_of(surface), inner = sides_in_solids(surface.scene);
+  const std::vector<Byte> layers = layers_of(surface);
+  // The sides that face the inside of a closed solid show where it is cut.
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(surface.scene, surface.simulation.plan.sides);
+  const std::vector<Byte>& inner = geometry->inner;
   const std::vector<Byte> dark_patch = dark_patches(surface);
   const auto polygon_of = [&](const PatchRange& range) -> const Polygon& {
     return surface.scene.polygons[mesh.polygon[range.begin]];

@@ -115,15 +115,11 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
 DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
                                   const std::vector<PatchRange>& lamps) {
   if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
-  Scene scene = run.scene;
-  scene.luminaires.clear();
-  scene.sun.reset();
-  scene.sky.reset();
-  const Lighting lighting = lighting_of(scene, run.world->tracing());
+  const Lighting& lighting = run.world->lighting_by_polygons();
   if (!lighting.mirrors) return {};
   std::vector<LampFace> faces;
   for (const PatchRange& patches : lamps) {
-    const auto of_lamp = lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
+    const auto of_lamp = lamp_faces(run.scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
   return mirrored_irradiance(lighting, faces, mesh, options, run.observer);

@@ -53,7 +53,7 @@ Eigen::VectorXd interest_in(const Scene& scene, const Simulation& simulation) {
     const Field reflected = simulation.solution.radiosity - simulation.problem.exitance;
     if (!(reflected.colwise() * enclosed.array() > 0).any()) return Eigen::VectorXd::Ones(enclosed.size());
   }
-  return interest_of(scene, simulation.mesh, names, enclosed);
+  return interest_of(scene, simulation.plan.sides, simulation.mesh, names, enclosed);
 }
 
 std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& simulation) {
@@ -61,7 +61,8 @@ std::vector<SpaceErrors> errors_by_space(const Scene& scene, const Simulation& s
   const PatchMesh& mesh = simulation.mesh;
   const bool all = simulation.plan.accuracy.interest.empty();
   const Eigen::VectorXd interest = all ? Eigen::VectorXd::Ones(mesh.size()) : interest_in(scene, simulation);
-  const Eigen::VectorXd inside = interest.cwiseProduct(inside_patches(scene, mesh, simulation.enclosed));
+  const Eigen::VectorXd inside =
+      interest.cwiseProduct(inside_patches(scene, simulation.plan.sides, mesh, simulation.enclosed));
   const Eigen::VectorXd outside = interest - inside;
   if (total(inside) == 0 || total(outside) == 0) return {};
   return {{"inside", errors_of(simulation, inside)}, {"outside", errors_of(simulation, outside)}};

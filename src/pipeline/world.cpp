@@ -27,7 +27,7 @@ class LightingOnDemand {
 }  // namespace
 
 struct World::Later {
-  LightingOnDemand planned, in_one_band, for_sensors;
+  LightingOnDemand planned, in_one_band, for_sensors, by_polygons;
 };
 
 World::World(std::shared_ptr<const Scene> scene, const Plan& plan)
@@ -55,6 +55,14 @@ const Lighting& World::lighting_in_one_band() const {
 
 const Lighting& World::sensor_lighting() const {
   return for_sensors_ == planned_ ? lighting() : later_->for_sensors.of(*for_sensors_, tracing_);
+}
+
+const Lighting& World::lighting_by_polygons() const {
+  Scene scene = *planned_;
+  scene.luminaires.clear();
+  scene.sun.reset();
+  scene.sky.reset();
+  return later_->by_polygons.of(scene, tracing_);
 }
 
 }  // namespace patchlight

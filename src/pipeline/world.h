@@ -50,6 +50,9 @@ class World {
   /// The light of sensor_scene().
   const Lighting& sensor_lighting() const;
 
+  /// Mirrors and clear faces for the light of polygons: planned_scene() without luminaires, sun and sky.
+  const Lighting& lighting_by_polygons() const;
+
  private:
   struct Later;
 

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -96,10 +97,10 @@ std::vector<Eigen::Index> bands_without_light(const std::vector<Spectrum>& spect
 
 // True when some kept side does not face the inside of a closed solid without openings.
 bool some_side_sees_out(const Scene& scene, const KeptSides& kept) {
-  const Shells shells = shells_of(scene);
-  std::vector<Solid> sealed = closed_solids(scene, shells);
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(scene, kept);
+  std::vector<Solid> sealed = geometry->solids;
   std::erase_if(sealed, [](const Solid& solid) { return solid.has_opening; });
-  const std::vector<std::uint8_t> within = sides_within(scene, shells, sealed);
+  const std::vector<std::uint8_t> within = sides_within(scene, geometry->shells, sealed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if ((kept.front[p] && !within[std::size_t{2} * p]) || (kept.back[p] && !within[std::size_t{2} * p + 1]))
       return true;

@@ -227,7 +227,7 @@ std::shared_ptr<const Goal> find_goal(const Scene& scene, const KeptSides& sides
   const PatchMesh mesh = coarse_mesh(scene, sides);
   const Occluder faces(scene, Occluder::Blockers::all, coverings);
   const Eigen::VectorXd enclosed = enclosed_patches(scene, faces, mesh);
-  const Eigen::VectorXd named = interest_of(scene, mesh, interest, enclosed);
+  const Eigen::VectorXd named = interest_of(scene, sides, mesh, interest, enclosed);
   if (total(enclosed) == 0 || total(named) == 0) return {};
   Goal goal{polygons_with(enclosed.cwiseMax(named), mesh), {}, 0, 0};
   double around = 0;

@@ -11,6 +11,7 @@
 #include "plan/planned_lines.h"
 #include "plan/survey.h"
 #include "scene/coverings.h"
+#include "scene/solids.h"
 
 #include <algorithm>
 #include <cassert>
@@ -238,10 +239,12 @@ std::size_t patches_asked(const Request& request) {
 KeptSides sides_for(const Scene& scene, const Request& request) {
   const std::optional<KeptSides>& kept = request.mesh.kept_sides;
   assert(!kept || kept->front.size() == scene.polygons.size());
-  if (kept) return *kept;
-  return kept_sides(scene, request.mesh.sides,
-                    {.unreached = contains(request.effects.force, Effect::reach),
-                     .turned_away = contains(request.effects.force, Effect::backs)});
+  KeptSides sides = kept ? *kept
+                         : kept_sides(scene, request.mesh.sides,
+                                      {.unreached = contains(request.effects.force, Effect::reach),
+                                       .turned_away = contains(request.effects.force, Effect::backs)});
+  sides.geometry = geometry_of(scene, sides);
+  return sides;
 }
 
 bool simulates(const Plan& plan, Effect effect) { return simulates(plan.decisions, effect); }

@@ -10,7 +10,6 @@
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/room_body.h"
-#include "scene/shells.h"
 #include "scene/solids.h"
 #include "scene/triangulate.h"
 
@@ -394,7 +393,8 @@ SceneReport survey(const Scene& scene) {
   report.area = area_of_faces(scene);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) report.lamps += is_lamp(scene, p);
 
-  const Shells shells = shells_of(scene);
+  const KeptSides kept = kept_sides(scene, Sides::automatic);
+  const Shells& shells = kept.geometry->shells;
   report.shells = shells.count;
   report.closed_shells = shells.closed_count;
   report.open_edges = shells.rim.size();
@@ -407,7 +407,7 @@ SceneReport survey(const Scene& scene) {
   Diagnostics found =
       merged({scene.diagnostics, problems_of_size(scene, report.unit_guess, sides), problems_with_luminaires(scene),
               problems_with_sensors(scene), problems_with_reflectance(report.materials),
-              problems_with_overlaps(scene, find_coverings(scene, kept_sides(scene, Sides::automatic)))});
+              problems_with_overlaps(scene, find_coverings(scene, kept))});
   if (!report.usable) {
     report.first_light = first_light(scene);
     found.push_back({DiagnosticCode::no_lamp, report.first_light->advice});

@@ -5,7 +5,6 @@
 #include "report/room_light.h"
 #include "scene/room_body.h"
 #include "scene/sensor_grid.h"
-#include "scene/shells.h"
 #include "scene/solids.h"
 #include "solve/scattering.h"
 #include "transport/closure.h"
@@ -14,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -89,14 +89,15 @@ std::vector<RoomPatches> bounds_by_names(const Scene& scene, const PatchMesh& me
 }
 
 // The closed shells that have patches on their inside, with these.
-std::vector<RoomPatches> bounds_by_shells(const Scene& scene, const PatchMesh& mesh) {
-  const Shells shells = shells_of(scene);
+std::vector<RoomPatches> bounds_by_shells(const Scene& scene, const Simulation& simulation) {
+  const PatchMesh& mesh = simulation.mesh;
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(scene, simulation.plan.sides);
   const std::size_t none = ~std::size_t{0};
   std::vector<std::size_t> of_side(2 * scene.polygons.size(), none);
-  const std::vector<Solid> solids = closed_solids(scene, shells);
+  const std::vector<Solid>& solids = geometry->solids;
   for (std::size_t k = 0; k < solids.size(); ++k) {
     for (const PolygonIndex p : solids[k].polygons)
-      of_side[std::size_t{2} * p + static_cast<std::size_t>(inner_side(solids[k], shells, p))] = k;
+      of_side[std::size_t{2} * p + static_cast<std::size_t>(inner_side(solids[k], geometry->shells, p))] = k;
   }
   std::vector<RoomPatches> all(solids.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
@@ -336,7 +337,7 @@ SolutionFacts solution_facts(const Simulation& simulation) {
 std::vector<RoomPatches> rooms_of(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
   std::vector<RoomPatches> all = bounds_by_names(scene, mesh);
-  if (all.empty()) all = bounds_by_shells(scene, mesh);
+  if (all.empty()) all = bounds_by_shells(scene, simulation);
   if (!all.empty()) return all;
   const Eigen::VectorXd& enclosed = simulation.enclosed;
   const bool some = enclosed.size() > 0 && enclosed.maxCoeff() > 0;

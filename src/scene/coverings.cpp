@@ -5,7 +5,6 @@
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/model_face.h"
-#include "scene/shells.h"
 #include "scene/simple_polygon.h"
 #include "scene/solids.h"
 #include "scene/triangulate.h"
@@ -15,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -154,11 +154,10 @@ void hide_solids(const Scene& scene, const KeptSides& kept, std::vector<Covered>
     if (lies_over_lamp[covered.by] == 0 && may_hide(scene, kept, covered)) pairs.push_back(&covered);
   }
   if (pairs.empty()) return;
-  const Shells shells = shells_of(scene);
-  const std::vector<std::uint8_t> inner = inner_sides(scene, shells, closed_solids(scene, shells));
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(scene, kept);
   for (Covered* const pair : pairs) {
     const Side behind = pair->by_side == Side::front ? Side::back : Side::front;
-    const bool is_of_solid = inner[2 * std::size_t{pair->by} + static_cast<std::size_t>(behind)] != 0;
+    const bool is_of_solid = geometry->inner[2 * std::size_t{pair->by} + static_cast<std::size_t>(behind)] != 0;
     if (is_of_solid) *pair = {pair->by, pair->by_side, pair->polygon, pair->side};
   }
 }

@@ -141,10 +141,10 @@ std::optional<Solid> sealed_hull(const Scene& scene) {
   const Box all = main_bounds(scene);
   const double extent = extent_of(scene);
   const double touching = weld_distance(scene);
-  const Shells shells = shells_of(scene);
-  for (Solid& solid : closed_solids(scene, shells)) {
+  SceneGeometry geometry = compute_geometry(scene);
+  for (Solid& solid : geometry.solids) {
     if (!solid.has_opening && with_margin(solid.box, touching).contains(all) &&
-        holds_all_else(scene, shells, solid, extent))
+        holds_all_else(scene, geometry.shells, solid, extent))
       return std::move(solid);
   }
   return std::nullopt;

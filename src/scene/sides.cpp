@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -347,11 +348,12 @@ struct LitSolids {
   std::string outside;  // a note on a luminaire that misses its room
 };
 
-LitSolids lit_solids(const Scene& scene, const Shells& shells, const std::vector<LampShape>& lamps, double extent) {
+LitSolids lit_solids(const Scene& scene, const SceneGeometry& geometry, const std::vector<LampShape>& lamps,
+                     double extent) {
   const bool daylight = scene.sun || scene.sky;
   LitSolids lit;
   bool holds_lamp = false;
-  for (Solid& solid : closed_solids(scene, shells)) {
+  for (const Solid& solid : geometry.solids) {
     const LampPlaces places = places_of(lamps, solid, extent);
     const auto [inside, outside] = lit_sides(solid, places, daylight);
     holds_lamp = holds_lamp || places.inside;
@@ -359,14 +361,14 @@ LitSolids lit_solids(const Scene& scene, const Shells& shells, const std::vector
       lit.count.first_outward_line = scene.polygons[solid.polygons[0]].line;
     lit.count.sealed += daylight && inside && !solid.has_opening;
     if (!inside)
-      lit.dark.push_back(std::move(solid));
+      lit.dark.push_back(solid);
     else if (!outside)
-      lit.around_all_lamps.push_back(std::move(solid));
+      lit.around_all_lamps.push_back(solid);
   }
   if (!holds_lamp) lit.outside = nearest_outside(scene, lit.dark);
   // A solid that other faces close may be dark inside. Which part of those faces lies inside is unknown, so the outside
   // of one that holds all lamps is kept.
-  for (Solid& solid : standing_solids(scene, shells)) {
+  for (Solid& solid : standing_solids(scene, geometry.shells)) {
     if (!lit_sides(solid, places_of(lamps, solid, extent), daylight).inside) lit.dark.push_back(std::move(solid));
   }
   lit.count.dark = static_cast<int>(lit.dark.size());
@@ -381,8 +383,9 @@ KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) 
   const double extent = extent_of(scene);
   const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
   const bool daylight = scene.sun || scene.sky;
-  const Shells shells = shells_of(scene);
-  LitSolids lit = lit_solids(scene, shells, lamps, extent);
+  kept.geometry = std::make_shared<const SceneGeometry>(compute_geometry(scene));
+  const Shells& shells = kept.geometry->shells;
+  LitSolids lit = lit_solids(scene, *kept.geometry, lamps, extent);
   for (const Solid& solid : lit.dark) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
   if (in_the_dark.unreached) lit.count.dark = 0;
   if (in_the_dark.turned_away) lit.count.outside = 0;
@@ -408,7 +411,7 @@ std::vector<Solid> dark_solids(const Scene& scene) {
   const double extent = extent_of(scene);
   const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
   if (lamps.empty() && !scene.sun && !scene.sky) return {};
-  return lit_solids(scene, shells_of(scene), lamps, extent).dark;
+  return lit_solids(scene, compute_geometry(scene), lamps, extent).dark;
 }
 
 KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark) {

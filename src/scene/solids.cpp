@@ -156,6 +156,8 @@ std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> poly
   return solid;
 }
 
+namespace {
+
 std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells) {
   std::vector<std::vector<PolygonIndex>> members(scene.polygons.size());
   for (PolygonIndex p = 0; p < members.size(); ++p) {
@@ -168,6 +170,20 @@ std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells) {
     if (solid) solids.push_back(std::move(*solid));
   }
   return solids;
+}
+
+}  // namespace
+
+SceneGeometry compute_geometry(const Scene& scene) {
+  SceneGeometry geometry;
+  geometry.shells = shells_of(scene);
+  geometry.solids = closed_solids(scene, geometry.shells);
+  geometry.inner = inner_sides(scene, geometry.shells, geometry.solids);
+  return geometry;
+}
+
+std::shared_ptr<const SceneGeometry> geometry_of(const Scene& scene, const KeptSides& kept) {
+  return kept.geometry ? kept.geometry : std::make_shared<const SceneGeometry>(compute_geometry(scene));
 }
 
 Side inner_side(const Solid& solid, const Shells& shells, PolygonIndex polygon) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "patchlight/scene/scene.h"
+#include "patchlight/scene/sides.h"
 
 #include "scene/shells.h"
 #include "scene/triangulate.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,9 +28,6 @@ struct Solid {
 std::optional<Solid> solid_of(const Scene& scene, std::vector<PolygonIndex> polygons, const Shells& shells,
                               std::vector<Triangle> lids = {});
 
-/// The solids of closed shells.
-std::vector<Solid> closed_solids(const Scene& scene, const Shells& shells);
-
 /// The side of one of its polygons that faces its inside.
 Side inner_side(const Solid& solid, const Shells& shells, PolygonIndex polygon);
 
@@ -47,6 +46,20 @@ std::vector<Point> corners_before(const Scene& scene, PolygonIndex polygon, Side
 
 /// At 2 * polygon + side 1 when the side belongs to one of these solids and faces its inside.
 std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
+
+/// The shells of a scene and the solids of those that are closed. kept_sides() computes them once for a scene that is
+/// ready; all that needs them takes them from KeptSides.
+struct SceneGeometry {
+  Shells shells;
+  std::vector<Solid> solids;
+  std::vector<std::uint8_t> inner;  ///< inner_sides() of these solids
+};
+
+/// O(n log n) for n corners.
+SceneGeometry compute_geometry(const Scene& scene);
+
+/// That of the kept sides, or a new one for sides that were not chosen by kept_sides().
+std::shared_ptr<const SceneGeometry> geometry_of(const Scene& scene, const KeptSides& kept);
 
 /// At 2 * polygon + side 1 when the side faces the inside of one of these solids: it belongs to the solid, or
 /// point_before() and the like of all its corners lie within. Looks for at most 2e7 tests of a box or triangle, a

@@ -55,6 +55,7 @@ KeptSides all_sides(const Scene& scene, const KeptSides& kept) {
   all.front.assign(scene.polygons.size(), 1);
   all.back = all.front;
   all.emit_from_back = kept.emit_from_back;
+  all.geometry = kept.geometry;
   return all;
 }
 
@@ -141,8 +142,9 @@ struct Region {
 
 std::vector<Region> regions_of(const Scene& scene, const Simulation& simulation) {
   const bool is_named = !simulation.plan.accuracy.interest.empty();
-  const Eigen::ArrayXd goal = is_named ? interest_in(scene, simulation).array()
-                                       : inside_patches(scene, simulation.mesh, simulation.enclosed).array();
+  const Eigen::ArrayXd goal =
+      is_named ? interest_in(scene, simulation).array()
+               : inside_patches(scene, simulation.plan.sides, simulation.mesh, simulation.enclosed).array();
   const double count = total(goal);
   if (count == 0 || count == static_cast<double>(goal.size())) return {{"all", Eigen::ArrayXd::Ones(goal.size())}};
   constexpr double of_goal = 7.0 / 8;

@@ -31,10 +31,11 @@ Point before(const PatchMesh& mesh, PatchIndex i, double unit) {
 TEST(Spaces, PatchesAreInsideWhereTheirSideLooksIntoTheRoom) {
   for (const double unit : {1.0, 1e-3}) {
     const Scene scene = turned(daylight_office(), unit);
-    const PatchMesh mesh = tessellate(scene, both_sides(scene), unit);
-    const Eigen::VectorXd inside = inside_shells(scene, mesh, Dividing::with_openings);
-    const Eigen::VectorXd of_room = interest_of(scene, mesh, {"room.inside"}, {});
-    const Eigen::VectorXd beside = interest_of(scene, mesh, {"plaster.outside", "ground"}, {});
+    const KeptSides sides = both_sides(scene);
+    const PatchMesh mesh = tessellate(scene, sides, unit);
+    const Eigen::VectorXd inside = inside_shells(scene, sides, mesh, Dividing::with_openings);
+    const Eigen::VectorXd of_room = interest_of(scene, sides, mesh, {"room.inside"}, {});
+    const Eigen::VectorXd beside = interest_of(scene, sides, mesh, {"plaster.outside", "ground"}, {});
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       const Point p = before(mesh, i, unit);
       const bool within = Box(Point(0, 0, 0), Point(4, 5, 3)).contains(p);
@@ -72,10 +73,10 @@ TEST(Spaces, RoomsAreEnclosedWhateverTheirShells) {
   for (const auto& [of, unit] :
        {std::pair(daylight_office(), 1.0), std::pair(office, 1e-3), std::pair(on_a_plain, 1.0)}) {
     const Scene scene = turned(of, unit);
-    const PatchMesh mesh =
-        tessellate(scene, both_sides(scene), unit * (of.polygons.size() > office.polygons.size() ? 100 : 1));
+    const KeptSides sides = both_sides(scene);
+    const PatchMesh mesh = tessellate(scene, sides, unit * (of.polygons.size() > office.polygons.size() ? 100 : 1));
     const Eigen::VectorXd enclosed = enclosed_in(scene, mesh);
-    const Eigen::VectorXd of_room = interest_of(scene, mesh, {"room.inside"}, enclosed);
+    const Eigen::VectorXd of_room = interest_of(scene, sides, mesh, {"room.inside"}, enclosed);
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       const bool within = Box(Point(0, 0, 0), Point(4, 5, 3)).contains(before(mesh, i, unit));
       EXPECT_EQ(enclosed[i], within ? 1 : 0) << i;

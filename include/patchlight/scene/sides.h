@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct DarkSolid {
   std::size_t polygons = 0;  ///< that it consists of
 };
 
+struct SceneGeometry;
+
 /// The sides that become patches, per polygon.
 struct KeptSides {
   std::vector<std::uint8_t> front;  ///< 1 when the polygon's front side is kept
@@ -35,6 +38,7 @@ struct KeptSides {
   std::vector<DarkSolid> dark_solids = {};
   std::size_t unreached = 0;    ///< sides that face the inside of one
   std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid, or nothing at all
+  std::shared_ptr<const SceneGeometry> geometry = {};  ///< the solids that decided this; null where none did
 };
 
 /// Sides that no light reaches and that are kept nevertheless.
