@@ -4,11 +4,13 @@
 usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...]
        [--commands A,B,...] [--keep FOLDER]
 
-Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, brackets piled
-up) and given to check, plan, solve or relight. A run is bad when the tool is ended by a signal, takes over 20 s of the
-processor, or returns an exit code that is not documented; so is 70, which stands for a defect. The tool may be any build, also one
-with sanitizers; --commands check,plan tries the readers alone, in a fraction of the time. Run number k of a seed is always the same, so that many can be made in pieces, each from --first on; a
-line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default: mutate_found).
+Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, words exchanged,
+brackets piled up) and given to check, plan, solve, relight or render. A run is bad in five cases: a signal ends the tool;
+it takes over 20 s of the processor; its exit code is not documented, or 70, which stands for a defect; it fails without
+a message; it succeeds and prints a nan. The tool may be any build, also one with sanitizers. --commands check,plan tries
+the readers alone, in a fraction of the time. Run number k of a seed is always the same, so that many can be made in
+pieces, each from --first on. A line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default:
+mutate_found).
 """
 import argparse
 import concurrent.futures
@@ -121,6 +123,9 @@ HOSTILE = [b"0", b"-1", b"1", b"1.0000001", b"1e-300", b"1e15", b"1e19", b"1e39"
            b"2147483648", b"4294967295", b"18446744073709551616", b"-2147483649", b"", b"0x10", b"1,5", b"/", b"\\", b"#",
            b'"', b"'''", b"[", b"{", b"}", b"\x00", b"\x1b[2J", b"\xff\xfe", b"\n\n", b"../", b"/dev/zero", b"/dev/stdin",
            b".a", b"%s%n"]
+MESSAGE = re.compile(rb"^patchlight: \w+: .{12}", re.MULTILINE)
+NAN = re.compile(rb"(?<![\w.])-?nan(?![\w.])")
+QUOTED = re.compile(rb"'[^'\n]*'")  # a message may quote the file
 NUMBER = re.compile(rb"[-+]?[0-9]+\.?[0-9]*(?:[eE][-+]?[0-9]+)?")
 
 
@@ -182,7 +187,7 @@ def seeds(tool, scratch, wanted):
 def damaged(data, chance):
     """One to four kinds of damage."""
     for _ in range(chance.choice((1, 1, 1, 2, 4))):
-        kind = chance.randrange(9)
+        kind = chance.randrange(10)
         at = chance.randrange(len(data) + 1)
         length = min(len(data) - at, chance.choice((1, 2, 4, 8, 40, 400)))
         numbers = list(NUMBER.finditer(data[:20000])) if kind in (0, 1, 2) else []
@@ -198,11 +203,27 @@ def damaged(data, chance):
         elif kind == 6 and data:
             at = min(at, len(data) - 1)
             data = data[:at] + bytes([data[at] ^ (1 << chance.randrange(8))]) + data[at + 1:]
+        elif kind == 9 and len(data) < 1_000_000:
+            words = re.split(rb"(\s+)", data)
+            for _ in range(chance.choice((1, 5))):
+                words[chance.randrange(len(words))] = chance.choice(words)
+            data = b"".join(words)
         elif kind == 7:
             data = data[:at] + struct.pack("<I", chance.choice((0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF))) + data[at + 4:]
         else:
             data = data[:at]
     return data
+
+
+def fault_of(code, said, printed):
+    """The fault of a run that has ended; None when there is none."""
+    if code in (-signal.SIGXCPU, -signal.SIGKILL):
+        return f"over {PATIENCE} s"
+    if code not in DOCUMENTED:
+        return f"exit code {code}"
+    if code == 0:
+        return "prints a nan" if NAN.search(QUOTED.sub(b"", printed + said)) else None
+    return None if MESSAGE.search(said) else "no message"
 
 
 def run_one(tool, cases, kinds, seed, number, keep):
@@ -220,9 +241,8 @@ def run_one(tool, cases, kinds, seed, number, keep):
             done = subprocess.run(["prlimit", f"--cpu={PATIENCE}", tool, *words, *([] if words[0] == "check" else ["--threads", "1"])],
                                   cwd=folder, check=False, stdin=subprocess.DEVNULL, capture_output=True, timeout=WAITING,
                                   env=ENVIRONMENT)
-            code, said = done.returncode, done.stderr[-2000:].decode(errors="replace")
-            late = code in (-signal.SIGXCPU, -signal.SIGKILL)
-            fault = None if code in DOCUMENTED else f"over {PATIENCE} s" if late else f"exit code {code}"
+            fault = fault_of(done.returncode, done.stderr, done.stdout)
+            said = done.stderr[-2000:].decode(errors="replace")
         except subprocess.TimeoutExpired:
             fault, said = f"no end after {WAITING} s", ""
         if fault is None:
