@@ -34,6 +34,10 @@ enum Stream : std::uint64_t {
   points_of_mirrored_sensors = 9,
   shift_at_mirrored_sensor = 10,
 
+  // Irradiance at sensors: rays of the hemisphere, and the choice of bright patches
+  hemisphere_of_sensor = 0x68656d69,
+  choice_of_bright_patch = 0x62726967,
+
   // Quarters of patches
   lamps_at_quarters = 1,
   clear_at_quarters = 2,

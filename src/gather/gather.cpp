@@ -1,7 +1,10 @@
 #include "patchlight/gather/gather.h"
 
 #include "base/parallel.h"
+#include "base/sampling.h"
+#include "base/streams.h"
 #include "base/tolerances.h"
+#include "form_factor/point_polygon.h"
 #include "gather/sources.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
@@ -203,37 +206,32 @@ struct Reading {
   Spectrum unexplained;  // variance by what planes leave of the light on patches
   Spectrum hidden;       // by the ends of patches that are not visible
   Spectrum reflected;    // the part that patches have reflected
+  double rays = 0;
 };
 
-// The part of each band that gets through colored panes.
-Spectrum of_bands(const Spectrum& values, const VisibleShare& share) {
-  return share.colour.size() > 0 ? Spectrum(values * share.colour) : values;
-}
+constexpr std::array parts_of_reading = {&Reading::mean,   &Reading::variance, &Reading::sampling,
+                                         &Reading::mesh,   &Reading::solver,   &Reading::unexplained,
+                                         &Reading::hidden, &Reading::reflected};
 
-// E = sum_j F(x, j) (B_j V_j + g_j . m_j), V_j the visible share and m_j its first moment; and its variance. Rays to a
-// patch that agree may miss what the others of it would meet: of all such rays the heaviest counts as an error.
-Reading reading_of(std::span<const Source> sources, std::span<const VisibleShare> shares, const Light& light) {
-  const Spectrum zero = Spectrum::Zero(light.radiosity.cols());
-  Reading reading{zero, zero, zero, zero, zero, zero, zero, zero};
-  Spectrum heaviest = zero;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    const PatchIndex j = sources[s].patch;
-    const double form_factor = sources[s].form_factor;
-    const Spectrum colour = of_bands(Spectrum::Ones(zero.size()), shares[s]);
-    for (Eigen::Index band = 0; band < zero.size(); ++band) {
-      Eigen::Vector4d plane(light.radiosity(j, band), 0, 0, 0);
-      if (light.slopes.gradient.size() > 0)
-        plane.tail<3>() = light.slopes.gradient.row(j).segment(3 * band, 3).matrix().transpose();
-      plane *= form_factor * colour[band];
-      reading.mean[band] += plane.dot(shares[s].moments);
-      reading.variance[band] += plane.dot(shares[s].covariance * plane);
-    }
-    if (!(shares[s].covariance(0, 0) > 0))
-      heaviest = heaviest.max(form_factor * colour * light.radiosity.row(j) / shares[s].rays);
-  }
-  reading.variance += heaviest.square();
-  return reading;
-}
+// A patch as a sensor sees it. All values are unbiased estimates per band.
+struct SeenPatch {
+  PatchIndex patch = 0;
+  Spectrum weight;  // irradiance by a radiosity of 1
+  Spectrum square;  // of the weight
+  Spectrum hidden;  // the weight times the share of the patch that is not visible
+};
+
+// What all sensors of a run share.
+struct Gather {
+  const Light& light;
+  const ShadowRays& shadow_rays;
+  const HemisphereRays& hemisphere;
+  const GatherOptions& options;
+  const TracingFrame frame;
+
+  // A sensor that is nearer to a polygon's plane lies on it: the occluder's own limit.
+  double tolerance() const { return tolerance_of_shapes / frame.scale; }
+};
 
 // How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. From afar all
 // points of the patch count alike. Close by the nearest points alone count.
@@ -242,64 +240,193 @@ double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from
   return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
 }
 
-// Let radiosity vary linearly with standard deviation sigma. Its mean over an end of share v differs from the patch's
-// by sqrt(3) (1 - v) sigma. Sensors behind a grid see the same end of all its faces, so these errors add up.
-Spectrum error_of_hidden_share(const Slopes& slopes, PatchIndex j, double visible) {
-  const double hidden = std::max(0.0, 1 - visible);
-  return hidden * slopes.residual.row(j).max(std::numbers::sqrt3 * slopes.unknown.row(j));
+// The errors of patches, as a sensor sees them.
+class ErrorsOfPatches {
+ public:
+  ErrorsOfPatches(const Light& light, const Sensor& sensor, Reading& reading)
+      : light_(light),
+        sensor_(sensor),
+        reading_(reading),
+        draws_(Field::Zero(static_cast<Eigen::Index>(light.errors.correlated.size()), reading.mean.size())) {}
+
+  void add(const SeenPatch& seen);
+  void finish() {
+    if (draws_.rows() > 0) reading_.sampling += draws_.square().colwise().mean();
+  }
+
+ private:
+  const Light& light_;
+  const Sensor& sensor_;
+  Reading& reading_;
+  Field draws_;  // per draw of the correlated errors
+};
+
+void ErrorsOfPatches::add(const SeenPatch& seen) {
+  const auto& [sampling, correlated, mesh, solver, display, reflected] = light_.errors;
+  const PatchIndex j = seen.patch;
+  if (sampling.size() > 0) reading_.sampling += seen.square * sampling.row(j).square();
+  for (Eigen::Index k = 0; k < draws_.rows(); ++k)
+    draws_.row(k) += seen.weight * correlated[static_cast<std::size_t>(k)].row(j);
+  if (mesh.size() > 0) reading_.mesh += seen.weight * mesh.row(j);
+  if (solver.size() > 0) reading_.solver += seen.weight * solver.row(j);
+  if (reflected.size() > 0) reading_.reflected += seen.weight * reflected.row(j);
+  const Slopes& slopes = light_.slopes;
+  if (slopes.residual.size() == 0) return;
+  // Even curvature has no first moment about the plane, so that it counts in the second order.
+  const double squared = squared_unevenness(light_.mesh, j, sensor_.point);
+  const Spectrum by_points = (squared * slopes.residual.row(j)).max(std::sqrt(squared) * slopes.unknown.row(j));
+  reading_.unexplained += seen.square * by_points.square();
+  // Let radiosity vary linearly with standard deviation sigma. Its mean over an end of share v differs from the patch's
+  // by sqrt(3) (1 - v) sigma. Sensors behind a grid see the same end of all its faces, so these errors add up.
+  reading_.hidden += seen.hidden * slopes.residual.row(j).max(std::numbers::sqrt3 * slopes.unknown.row(j));
 }
 
-// The errors of the patches, as the sensor sees them.
-Reading with_errors_of_patches(Reading reading, const Sensor& sensor, std::span<const Source> sources,
-                               std::span<const VisibleShare> shares, const Light& light) {
-  const auto& [sampling, correlated, mesh, solver, display, reflected] = light.errors;
-  Field draws = Field::Zero(static_cast<Eigen::Index>(correlated.size()), reading.mean.size());
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    const PatchIndex j = sources[s].patch;
-    const double seen = sources[s].form_factor * shares[s].mean();
-    if (!(seen > 0)) continue;
-    const Spectrum weight = of_bands(Spectrum::Constant(reading.mean.size(), seen), shares[s]);
-    if (sampling.size() > 0) reading.sampling += (weight * sampling.row(j)).square();
-    for (Eigen::Index k = 0; k < draws.rows(); ++k)
-      draws.row(k) += weight * correlated[static_cast<std::size_t>(k)].row(j);
-    if (mesh.size() > 0) reading.mesh += weight * mesh.row(j);
-    if (solver.size() > 0) reading.solver += weight * solver.row(j);
-    if (reflected.size() > 0) reading.reflected += weight * reflected.row(j);
-    if (light.slopes.residual.size() == 0) continue;
-    // Even curvature has no first moment about the plane, so that it counts in the second order.
-    const double squared = squared_unevenness(light.mesh, j, sensor.point);
-    const Spectrum by_points =
-        (squared * light.slopes.residual.row(j)).max(std::sqrt(squared) * light.slopes.unknown.row(j));
-    reading.unexplained += (weight * by_points).square();
-    reading.hidden += weight * error_of_hidden_share(light.slopes, j, shares[s].mean());
+// The plane of a patch's radiosity in one band: its mean and its gradient.
+Eigen::Vector4d plane_of(const Light& light, PatchIndex j, Eigen::Index band) {
+  Eigen::Vector4d plane(light.radiosity(j, band), 0, 0, 0);
+  if (light.slopes.gradient.size() > 0)
+    plane.tail<3>() = light.slopes.gradient.row(j).segment(3 * band, 3).matrix().transpose();
+  return plane;
+}
+
+// Patches get shadow rays of their own if their radiosity is above so many times the irradiance of the sensor. Rays of
+// the hemisphere find the light of all others: n of them leave a relative variance of this number / n at most, and less
+// as they are stratified.
+constexpr double bright_factor = 2;
+
+// Rays by the part of the light that bright patches may give. Half of them go by light, half by form factor: a lamp
+// that is hidden does not take all rays. A patch that would get fewer than the least number gets that, or none, with a
+// probability that keeps the mean.
+std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& limit, const Gather& gather,
+                                         double times, std::uint64_t key) {
+  const std::span<const Source> sources = found.bright;
+  const Spectrum possible = found.unoccluded + limit / bright_factor;
+  const double share = (possible > 0).select(found.unoccluded / possible, 0.0).maxCoeff();
+  const double rays = times * share * gather.options.rays;
+  const double least = times * gather.options.least_rays;
+  const bool all = least * static_cast<double>(sources.size()) <= rays;
+  double form_factors = 0;
+  for (const Source& source : sources) form_factors += source.form_factor;
+  std::vector<ChosenSource> chosen;
+  for (const Source& source : sources) {
+    const double wanted = rays * (source.light_share + source.form_factor / form_factors) / 2;
+    const double probability = all ? 1 : std::min(1.0, wanted / least);
+    const double u = hash({key, stream::choice_of_bright_patch, source.patch}) * 0x1p-32;
+    if (u >= probability) continue;
+    chosen.push_back({&source, ray_counts(all ? least + wanted : std::max(least, wanted)), probability});
   }
-  if (draws.rows() > 0) reading.sampling += draws.square().colwise().mean();
+  return chosen;
+}
+
+// E = sum_j F(x, j) (B_j V_j + g_j . m_j) / p_j, V_j the visible share, m_j its first moment and p_j the probability of
+// rays to j; and its variance (Horvitz and Thompson 1952). Rays to a patch that agree may miss what the others of it
+// would meet: of all such rays the heaviest counts as an error.
+void add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources, const Spectrum& limit,
+                        double times, std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
+  const std::vector<ChosenSource> chosen =
+      chosen_sources(sources, limit, gather, times, key_of(sensor, gather.frame, gather.options.seed, stage));
+  const std::vector<VisibleShare> shares = gather.shadow_rays.visible_shares(sensor, chosen, stage);
+  const Eigen::Index bands = reading.mean.size();
+  Spectrum heaviest = Spectrum::Zero(bands);
+  for (std::size_t s = 0; s < chosen.size(); ++s) {
+    const auto& [source, rays, probability] = chosen[s];
+    const VisibleShare& share = shares[s];
+    const Spectrum factor =
+        source->form_factor / probability * (share.colour.size() > 0 ? share.colour : Spectrum(Spectrum::Ones(bands)));
+    for (Eigen::Index band = 0; band < bands; ++band) {
+      const Eigen::Vector4d plane = factor[band] * plane_of(gather.light, source->patch, band);
+      const double sent = plane.dot(share.moments);
+      reading.mean[band] += sent;
+      reading.variance[band] += plane.dot(share.covariance * plane) + (1 - probability) * sent * sent;
+    }
+    reading.rays += share.rays;
+    if (!(share.covariance(0, 0) > 0))
+      heaviest = heaviest.max(factor * gather.light.radiosity.row(source->patch) / share.rays);
+    if (!(share.mean() > 0)) continue;
+    const Spectrum weight = factor * share.mean();
+    errors.add({source->patch, weight, probability * weight.square(), weight * std::max(0.0, 1 - share.mean())});
+  }
+  reading.variance += heaviest.square();
+}
+
+// The share of light that arrives from a hit, per band.
+Spectrum share_of(const HemisphereHit& hit, Eigen::Index bands) {
+  return hit.by_band.size() > 0 ? hit.by_band : Spectrum::Constant(bands, hit.arriving);
+}
+
+// The errors of the patches that rays meet; hits on one patch stand side by side. Products of different rays estimate
+// the square of a weight: (sum^2 - sum of squares) / n^2.
+void add_errors(const Gather& gather, const Sensor& sensor, std::span<const HemisphereHit> hits, double rays,
+                Eigen::Index bands, ErrorsOfPatches& errors) {
+  const PatchMesh& mesh = gather.light.mesh;
+  for (std::size_t k = 0; k < hits.size();) {
+    const PatchIndex j = hits[k].patch;
+    Spectrum sum = Spectrum::Zero(bands), squares = sum;
+    for (; k < hits.size() && hits[k].patch == j; ++k) {
+      const Spectrum share = share_of(hits[k], bands);
+      sum += share;
+      squares += share.square();
+    }
+    const Spectrum weight = sum / rays;
+    const Spectrum square = (sum.square() - squares) / (rays * rays);
+    const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline_above_horizon(mesh, j, sensor));
+    errors.add({j, weight, square, form_factor > 0 ? Spectrum(weight - square / form_factor) : weight});
+  }
+}
+
+// E = sum over rays of T (B_j + g_j . (y - c_j)) / n at the points y that rays meet, except on bright patches.
+void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectrum& limit, double times,
+                       std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
+  const PatchMesh& mesh = gather.light.mesh;
+  const FieldView& radiosity = gather.light.radiosity;
+  const auto each = static_cast<std::uint32_t>(std::ceil(std::max(2.0, times * gather.options.rays / most_replicates)));
+  const auto rays = static_cast<double>(each * most_replicates);
+  std::vector<HemisphereHit> hits = gather.hemisphere.hits(sensor, each, stage);
+  std::erase_if(hits, [&](const HemisphereHit& hit) {
+    const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
+    return (radiosity.row(hit.patch) > limit).any() || height <= gather.tolerance();
+  });
+  const Eigen::Index bands = reading.mean.size();
+  Field means = Field::Zero(most_replicates, bands);
+  for (const HemisphereHit& hit : hits) {
+    Eigen::Vector4d place(1, 0, 0, 0);
+    place.tail<3>() = hit.point - mesh.centroid[hit.patch];
+    for (Eigen::Index band = 0; band < bands; ++band) {
+      const double share = hit.by_band.size() > 0 ? hit.by_band[band] : hit.arriving;
+      means(hit.replicate, band) += share / each * plane_of(gather.light, hit.patch, band).dot(place);
+    }
+  }
+  const Spectrum mean = means.colwise().mean();
+  reading.mean += mean;
+  reading.variance += (means.rowwise() - mean).square().colwise().sum() / (most_replicates * (most_replicates - 1.0));
+  reading.rays += rays;
+  std::stable_sort(hits.begin(), hits.end(),
+                   [](const HemisphereHit& a, const HemisphereHit& b) { return a.patch < b.patch; });
+  add_errors(gather, sensor, hits, rays, bands, errors);
+}
+
+// One estimate, with `times` as many rays as the options have.
+Reading estimate(const Gather& gather, const Sensor& sensor, const Sources& sources, const Spectrum& limit,
+                 double times, std::uint32_t stage) {
+  Reading reading;
+  for (Spectrum Reading::*const part : parts_of_reading) reading.*part = Spectrum::Zero(limit.size());
+  ErrorsOfPatches errors(gather.light, sensor, reading);
+  add_bright_patches(gather, sensor, sources, limit, times, stage, reading, errors);
+  if (sources.is_rest_lit) add_other_patches(gather, sensor, limit, times, stage, reading, errors);
+  errors.finish();
+  reading.hidden = reading.hidden.max(0);
   return reading;
 }
 
-std::vector<RayCounts> counts_for(std::span<const Source> sources, double rays, double least) {
-  double form_factors = 0;
-  for (const Source& source : sources) form_factors += source.form_factor;
-  std::vector<RayCounts> counts;
-  // Half of them by light, half by form factor: a lamp that is hidden does not take all rays.
-  for (const Source& source : sources)
-    counts.push_back(ray_counts(least + rays * (source.light_share + source.form_factor / form_factors) / 2));
-  return counts;
-}
-
-// Both by the number of their rays.
-std::vector<VisibleShare> together(std::vector<VisibleShare> first, std::span<const VisibleShare> second) {
-  for (std::size_t s = 0; s < first.size(); ++s) {
-    const double rays = first[s].rays + second[s].rays;
-    const double a = first[s].rays / rays;
-    const double b = second[s].rays / rays;
-    const double mean = a * first[s].mean() + b * second[s].mean();
-    Spectrum colour = a * first[s].mean() * first[s].colour + b * second[s].mean() * second[s].colour;
-    if (mean > 0) colour /= mean;
-    first[s] = {a * first[s].moments + b * second[s].moments,
-                a * a * first[s].covariance + b * b * second[s].covariance, rays, colour};
-  }
-  return first;
+// The mean of two independent estimates by the number of their rays.
+Reading together(const Reading& first, const Reading& second) {
+  const double rays = first.rays + second.rays;
+  const double a = first.rays / rays, b = second.rays / rays;
+  Reading both;
+  for (Spectrum Reading::*const part : parts_of_reading) both.*part = a * (first.*part) + b * (second.*part);
+  both.variance = a * a * first.variance + b * b * second.variance;
+  both.rays = rays;
+  return both;
 }
 
 // How many times as many rays would leave the wanted error: no number where nothing is seen yet of what may be seen.
@@ -311,21 +438,26 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
   return std::max(1.0, factor.maxCoeff());
 }
 
-Reading read_sensor(const Sensor& sensor, std::span<const Source> sources, const Light& light, const ShadowRays& rays,
-                    const GatherOptions& options) {
-  const std::vector<RayCounts> first = counts_for(sources, options.rays, options.least_rays);
-  std::vector<VisibleShare> shares = rays.visible_shares(sensor, sources, first, 0);
-  Reading reading = reading_of(sources, shares, light);
-  double traced = 0;
-  for (const VisibleShare& share : shares) traced += share.rays;
-  const double more = std::min((wanted_factor(reading, options) - 1) * traced, options.most_rays - traced);
-  if (more > traced / 2) {
-    const double share = more / traced;
-    const std::vector<RayCounts> second = counts_for(sources, share * options.rays, share * options.least_rays);
-    shares = together(std::move(shares), rays.visible_shares(sensor, sources, second, 1));
-    reading = reading_of(sources, shares, light);
-  }
-  return with_errors_of_patches(std::move(reading), sensor, sources, shares, light);
+// The radiosity above which patches count as bright at a sensor, by few rays that take no other part. All patches do
+// where the mesh is so small that each may get its own rays.
+Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
+  constexpr std::uint32_t each = 32;
+  Spectrum sum = Spectrum::Zero(gather.light.radiosity.cols());
+  const auto least = static_cast<double>(gather.options.least_rays) * gather.light.mesh.size();
+  if (least <= gather.options.rays) return sum;
+  for (const HemisphereHit& hit : gather.hemisphere.hits(sensor, each, 2))
+    sum += hit.arriving * gather.light.radiosity.row(hit.patch);
+  return bright_factor * sum / (each * most_replicates);
+}
+
+Reading read_sensor(const Gather& gather, const Sensor& sensor) {
+  const Spectrum limit = limit_of_bright(gather, sensor);
+  const Sources sources = sources_before(sensor, gather.light.mesh, gather.light.radiosity, limit, gather.tolerance());
+  const Reading first = estimate(gather, sensor, sources, limit, 1, 0);
+  const double more =
+      std::min((wanted_factor(first, gather.options) - 1) * first.rays, gather.options.most_rays - first.rays);
+  if (!(more > first.rays / 2)) return first;
+  return together(first, estimate(gather, sensor, sources, limit, more / first.rays, 1));
 }
 
 // A column for each band of what a reading has.
@@ -355,17 +487,15 @@ Field SensorErrors::total() const {
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
-  const ShadowRays rays(mesh, occluder, options.seed, options.coloured);
+  const ShadowRays shadow_rays(mesh, occluder, options.seed, options.coloured);
+  const HemisphereRays hemisphere(mesh, occluder, options.seed, options.coloured);
   const Light light{mesh, radiosity,
                     options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
                     options.errors};
-  // A sensor that is nearer to a polygon's plane lies on it: the occluder's own limit.
-  const double tolerance = tolerance_of_shapes / occluder.frame().scale;
+  const Gather gather{light, shadow_rays, hemisphere, options, occluder.frame()};
   std::vector<Reading> readings(sensors.size());
-  parallel_for(sensors.size(), Stage::gather, observer, [&](std::size_t k) {
-    const std::vector<Source> sources = sources_before(sensors[k], mesh, radiosity, tolerance);
-    readings[k] = read_sensor(sensors[k], sources, light, rays, options);
-  });
+  parallel_for(sensors.size(), Stage::gather, observer,
+               [&](std::size_t k) { readings[k] = read_sensor(gather, sensors[k]); });
   const Eigen::Index bands = radiosity.cols();
   const Field irradiance = column_of(readings, &Reading::mean, bands);
   return {irradiance,

@@ -1,6 +1,7 @@
 #include "gather/sources.h"
 
 #include "base/sampling.h"
+#include "base/streams.h"
 #include "form_factor/point_polygon.h"
 
 #include <algorithm>
@@ -61,27 +62,36 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
 
 }  // namespace
 
-std::vector<Source> sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity,
-                                   double tolerance) {
-  std::vector<Source> found;
-  Spectrum unoccluded = Spectrum::Zero(radiosity.cols());
+std::vector<Point> outline_above_horizon(const PatchMesh& mesh, PatchIndex patch, const Sensor& sensor) {
+  const PatchCorners corners = mesh.corner_points(patch);
+  const std::span<const Point> points = corners;
+  const bool is_cut = std::any_of(points.begin(), points.end(),
+                                  [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) < 0; });
+  return is_cut ? clip_to_half_space(points, sensor.point, sensor.normal)
+                : std::vector<Point>(points.begin(), points.end());
+}
+
+Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity, const Spectrum& limit,
+                       double tolerance) {
+  Sources found;
+  found.unoccluded = Spectrum::Zero(radiosity.cols());
   for (PatchIndex j = 0; j < mesh.size(); ++j) {
+    if (!(radiosity.row(j) > limit).any()) {
+      found.is_rest_lit = found.is_rest_lit || (radiosity.row(j) > 0).any();
+      continue;
+    }
     if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= tolerance) continue;
-    const PatchCorners corners = mesh.corner_points(j);
-    const std::span<const Point> points = corners;
-    const bool is_cut = std::any_of(points.begin(), points.end(),
-                                    [&](const Point& corner) { return sensor.normal.dot(corner - sensor.point) < 0; });
-    std::vector<Point> outline = is_cut ? clip_to_half_space(points, sensor.point, sensor.normal)
-                                        : std::vector<Point>(points.begin(), points.end());
+    std::vector<Point> outline = outline_above_horizon(mesh, j, sensor);
     if (outline.empty()) continue;
     const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline);
     if (!(form_factor > 0)) continue;
-    unoccluded += form_factor * radiosity.row(j);
-    found.push_back({j, std::move(outline), form_factor});
+    found.unoccluded += form_factor * radiosity.row(j);
+    found.bright.push_back({j, std::move(outline), form_factor});
   }
-  const double bands = std::max<double>(1, static_cast<double>((unoccluded > 0).count()));
-  const Spectrum weight = (unoccluded > 0).select(1 / (bands * unoccluded), 0.0);
-  for (Source& source : found) source.light_share = source.form_factor * (radiosity.row(source.patch) * weight).sum();
+  const double bands = std::max<double>(1, static_cast<double>((found.unoccluded > 0).count()));
+  const Spectrum weight = (found.unoccluded > 0).select(1 / (bands * found.unoccluded), 0.0);
+  for (Source& source : found.bright)
+    source.light_share = source.form_factor * (radiosity.row(source.patch) * weight).sum();
   return found;
 }
 
@@ -89,6 +99,84 @@ RayCounts ray_counts(double rays) {
   const auto wanted = static_cast<std::uint32_t>(std::ceil(std::max(rays, 2.0)));
   const std::uint32_t replicates = std::clamp(wanted / 2, 2U, most_replicates);
   return {replicates, (wanted + replicates - 1) / replicates};
+}
+
+std::uint64_t key_of(const Sensor& sensor, const TracingFrame& frame, std::uint64_t seed, std::uint32_t stage) {
+  return hash({seed, key_of(frame.scale * (sensor.point - frame.centre)), key_of(sensor.normal), stage});
+}
+
+HemisphereRays::HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed,
+                               const LightPaths* coloured)
+    : mesh_(mesh),
+      occluder_(occluder),
+      coloured_(coloured),
+      seed_(seed),
+      lookup_(mesh),
+      points_(scrambled_sobol(most_points, hash({seed, stream::hemisphere_of_sensor}))) {}
+
+// Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
+std::vector<Ray> HemisphereRays::rays(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
+  const std::uint64_t key = hash({key_of(sensor, occluder_.frame(), seed_, stage), stream::hemisphere_of_sensor});
+  std::vector<Ray> rays;
+  rays.reserve(std::size_t{most_replicates} * each);
+  for (std::uint32_t r = 0; r < most_replicates; ++r) {
+    std::array<std::uint32_t, 2> shift{};
+    for (std::uint32_t k = 0; k < each; ++k) {
+      if (k % most_points == 0)
+        for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, 2 * r + d, k / most_points});
+      const auto& point = points_[k % most_points];
+      rays.push_back(
+          {sensor.point, cosine_direction(sensor.normal, shifted(point[0], shift[0]), shifted(point[1], shift[1]))});
+    }
+  }
+  return rays;
+}
+
+std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
+  std::vector<Ray> rays = this->rays(sensor, each, stage);
+  std::vector<std::uint32_t> replicate(rays.size());
+  for (std::size_t k = 0; k < rays.size(); ++k) replicate[k] = static_cast<std::uint32_t>(k / each);
+  std::vector<HemisphereHit> found;
+  std::vector<std::size_t> behind_panes;  // those on clear polygons or beyond them
+  for (std::size_t passed = 0; !rays.empty() && passed < Occluder::most_meetings; ++passed) {
+    const std::vector<std::optional<Hit>> ends = occluder_.first_hits(rays);
+    std::vector<Ray> onward;
+    std::vector<std::uint32_t> replicate_onward;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      if (!ends[k]) continue;
+      const Hit& hit = *ends[k];
+      const SpecularFace* const face = occluder_.specular_faces().at(hit.polygon);
+      const bool is_clear = face != nullptr && face->is_clear();
+      if (const auto patch = lookup_.patch_at(hit.polygon, hit.side, hit.point)) {
+        if (is_clear || passed > 0) behind_panes.push_back(found.size());
+        found.push_back({*patch, replicate[k], hit.point});
+      }
+      if (!is_clear) continue;
+      onward.push_back({hit.point, rays[k].direction, hit.polygon});
+      replicate_onward.push_back(replicate[k]);
+    }
+    rays = std::move(onward);
+    replicate = std::move(replicate_onward);
+  }
+  return attenuated(std::move(found), sensor, behind_panes);
+}
+
+std::vector<HemisphereHit> HemisphereRays::attenuated(std::vector<HemisphereHit> hits, const Sensor& sensor,
+                                                      std::span<const std::size_t> behind_panes) const {
+  std::vector<Segment> segments;
+  for (const std::size_t k : behind_panes)
+    segments.push_back({sensor.point, hits[k].point, no_polygon, mesh_.polygon[hits[k].patch]});
+  const std::vector<float> arriving = occluder_.transmittance(segments);
+  const Field by_band = coloured_ != nullptr ? coloured_->transmittance(segments) : Field();
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    HemisphereHit& hit = hits[behind_panes[s]];
+    hit.arriving = static_cast<double>(arriving[s]);
+    if (coloured_ == nullptr) continue;
+    const Vector direction = (segments[s].to - segments[s].from).normalized();
+    hit.by_band =
+        occluder_.relative_held(segments[s].to_polygon, direction) * by_band.row(static_cast<Eigen::Index>(s));
+  }
+  return hits;
 }
 
 ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured)
@@ -100,23 +188,22 @@ ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uin
 
 // Points are uniform in the solid angle of the source: of a large source close by, points uniform in its area would
 // miss the part that counts. Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
-ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> sources,
-                                  std::span<const RayCounts> counts, std::uint32_t stage) const {
-  const TracingFrame frame = occluder_.frame();
-  const std::uint64_t key =
-      hash({seed_, key_of(frame.scale * (sensor.point - frame.centre)), key_of(sensor.normal), stage});
+ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const ChosenSource> sources,
+                                  std::uint32_t stage) const {
+  const std::uint64_t key = key_of(sensor, occluder_.frame(), seed_, stage);
   Rays all;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    const PatchIndex j = sources[s].patch;
-    for (std::uint32_t r = 0; r < counts[s].replicates; ++r) {
+  for (const ChosenSource& chosen : sources) {
+    const Source& source = *chosen.source;
+    const PatchIndex j = source.patch;
+    for (std::uint32_t r = 0; r < chosen.rays.replicates; ++r) {
       std::array<std::uint32_t, 2> shift{};
-      for (std::uint32_t k = 0; k < counts[s].each; ++k) {
+      for (std::uint32_t k = 0; k < chosen.rays.each; ++k) {
         if (k % most_points == 0)
           for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, j, 2 * r + d, k / most_points});
         const auto& point = points_[k % most_points];
-        const SeenPoint seen = sample_seen_point(sensor.point, sources[s].outline, shifted(point[0], shift[0]),
-                                                 shifted(point[1], shift[1]));
-        const Point to = seen.solid_angle > 0 ? seen.point : sources[s].outline[0];
+        const SeenPoint seen =
+            sample_seen_point(sensor.point, source.outline, shifted(point[0], shift[0]), shifted(point[1], shift[1]));
+        const Point to = seen.solid_angle > 0 ? seen.point : source.outline[0];
         const double cosine = sensor.normal.dot((to - sensor.point).normalized());
         all.segments.push_back({sensor.point, to, no_polygon, mesh_.polygon[j]});
         all.weights.push_back(std::max(0.0, cosine) * seen.solid_angle * seen.weight);
@@ -126,21 +213,22 @@ ShadowRays::Rays ShadowRays::rays(const Sensor& sensor, std::span<const Source> 
   return all;
 }
 
-std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const Source> sources,
-                                                     std::span<const RayCounts> counts, std::uint32_t stage) const {
-  const auto [segments, weights] = rays(sensor, sources, counts, stage);
+std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::span<const ChosenSource> sources,
+                                                     std::uint32_t stage) const {
+  const auto [segments, weights] = rays(sensor, sources, stage);
   const std::vector<float> arriving = occluder_.transmittance(segments);
   const Field by_band = coloured_ != nullptr ? coloured_->transmittance(segments) : Field();
   std::vector<VisibleShare> shares;
   std::size_t ray = 0;
-  for (const RayCounts& count : counts) {
+  for (const ChosenSource& chosen : sources) {
+    const RayCounts& count = chosen.rays;
     std::array<Weights, most_replicates> replicates{};
     for (Weights& replicate : replicates) replicate.by_band = Spectrum::Zero(by_band.cols());
     for (std::uint32_t r = 0; r < count.replicates; ++r) {
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
         const double reached = static_cast<double>(arriving[ray]) * weights[ray];
-        const Vector way = segments[ray].to - mesh_.centroid[sources[shares.size()].patch];
+        const Vector way = segments[ray].to - mesh_.centroid[chosen.source->patch];
         replicates[r].reached += reached * Eigen::Vector4d(1, way.x(), way.y(), way.z());
         if (by_band.size() == 0 || !(reached > 0)) continue;
         const Segment& segment = segments[ray];

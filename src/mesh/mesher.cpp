@@ -29,6 +29,7 @@ PatchCorners PatchMesh::corner_points(PatchIndex patch) const {
 
 PatchRange PatchMesh::patches_on(PolygonIndex on_polygon, Side on_side) const {
   const std::size_t slot = side_slot(on_polygon, on_side);
+  if (slot + 1 >= first_patch.size()) return {};
   return {first_patch[slot], first_patch[slot + 1]};
 }
 

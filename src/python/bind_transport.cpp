@@ -15,6 +15,7 @@
 #include "transport/closure.h"
 #include "visibility/occluder.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -44,9 +45,12 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   std::vector<Sensor> sensors;
   for (const SensorPlace& place : places) sensors.push_back(place.sensor);
   const Field one_each = Field(Eigen::MatrixXd::Identity(patches, patches).array());
-  Field factors = gather_irradiance(problem.mesh, one_each, occluder, sensors,
-                                    {.seed = problem.plan.assembly.seed, .slopes = false}, observer)
-                      .irradiance;
+  Field factors =
+      gather_irradiance(
+          problem.mesh, one_each, occluder, sensors,
+          {.rays = std::max(4096, 8 * static_cast<int>(patches)), .seed = problem.plan.assembly.seed, .slopes = false},
+          observer)
+          .irradiance;
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k].standing == Standing::inside_wall)
       factors.row(static_cast<Eigen::Index>(k)).setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -26,8 +26,8 @@ struct RadiosityErrors {
 
 /// How the light at sensors is sampled.
 struct GatherOptions {
-  int least_rays = 4;          ///< shadow rays to a patch before the sensor
-  int rays = 8192;             ///< in total to all patches, in proportion to their possible light
+  int least_rays = 4;          ///< shadow rays to a bright patch before the sensor, unless these are too many
+  int rays = 4096;             ///< to bright patches, in proportion to their possible light; as many over the hemisphere
   int most_rays = 1 << 18;     ///< if the relative standard error is above wanted_error
   double wanted_error = 0.01;  ///< requested relative standard error of a sensor
   std::uint64_t seed = 1;
@@ -53,12 +53,18 @@ struct GatheredIrradiance {
   SensorErrors errors;
 };
 
-/// Computes irradiance at points by gathering the solved radiosity. Each patch contributes its closed-form form factor
-/// times its visible fraction by shadow rays. The number of rays to a patch depends on its unoccluded light, not on the
-/// hits of its rays, so the estimate keeps all light through narrow openings. The rays of a patch form replicates with
-/// independent random shifts, whose scatter gives the standard error. Its lower bound is the heaviest ray of those
-/// patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with too large a standard error get
-/// more rays, in proportion to its square. The random numbers depend on the place of the sensor.
+/// Computes irradiance at points by gathering the solved radiosity, in two parts.
+/// - Bright patches: their radiosity exceeds twice the irradiance that a few first rays find at the sensor. Each
+///   contributes its closed-form form factor times its visible fraction by shadow rays. The number of rays depends on
+///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. Of very many bright
+///   patches some are chosen at random.
+/// - All others: by rays over the hemisphere, distributed as the cosine.
+/// In a mesh of at most rays / least_rays patches all count as bright, so that sensors without occluders are exact.
+///
+/// Rays form replicates with independent random shifts, whose scatter gives the standard error. Its lower bound is the
+/// heaviest ray of those bright patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with too
+/// large a standard error get more rays, in proportion to its square. The random numbers depend on the place of the
+/// sensor.
 ///
 /// On each patch the radiosity is linear, with slopes fitted to the means of surrounding patches. The nonlinear part is
 /// an error, weighted by how unevenly the sensor sees the patch, docs/theory/irradiance-at-a-point.md. Such errors of
@@ -68,7 +74,7 @@ struct GatheredIrradiance {
 /// The errors of the patches are gathered like their light. Independent sampling errors add up in squares. Each draw of
 /// correlated errors adds up like light. Mesh errors and the solver's bounds add up linearly. If the mesh errors of the
 /// patches are unknown, the relative error of the reflected light is estimated from the residual of the planes, root
-/// mean square over all sensors. O(points x patches). \throws Canceled.
+/// mean square over all sensors. O(points x (rays + patches)), with little work per patch. \throws Canceled.
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options = {},
                                      const Observer& observer = {});
