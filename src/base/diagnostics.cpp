@@ -38,7 +38,8 @@ std::optional<DiagnosticCode> diagnostic_code(std::string_view name) {
 }
 
 bool makes_results_wrong(DiagnosticCode code) {
-  return code == DiagnosticCode::left_out || code == DiagnosticCode::guessed_up;
+  return code == DiagnosticCode::left_out || code == DiagnosticCode::implausible_size ||
+         code == DiagnosticCode::guessed_up;
 }
 
 bool is_note(DiagnosticCode code) { return severity_of(code) == Severity::note; }

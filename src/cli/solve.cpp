@@ -318,6 +318,8 @@ std::string how_to_know_errors(const SolveArguments& arguments, bool unfinished)
 // Prints warnings, requested results, files, facts of the run, and notes.
 void print_results(const SolveArguments& arguments, const Results& results,
                    const std::vector<std::filesystem::path>& written, const Diagnostics& of_checkpoint) {
+  const Diagnostics all = merged({of_checkpoint, notes(*results.scene, results.simulation)});
+  print_notes(chosen(all, makes_results_wrong), arguments.quiet);
   for (const Diagnostic& warning : results.views.sensors.warnings) print_diagnostic("warning", warning);
   if (results.views.picture && !arguments.picture.file.empty()) {
     if (const auto missed = missed_error(arguments.picture, *results.views.picture)) print_message("warning", *missed);
@@ -327,8 +329,8 @@ void print_results(const SolveArguments& arguments, const Results& results,
                                   how_to_know_errors(arguments, results.report.solution.unfinished));
   if (results.views.lightmap) std::cout << lightmap_line(*results.views.lightmap, arguments.lightmap);
   std::cout << files_line(written) << summary_of_run(results.report, arguments.verbose) << std::flush;
-  const Diagnostics all = merged({of_checkpoint, notes(*results.scene, results.simulation)});
-  print_notes(all, false, arguments.verbose ? all.size() : 5);
+  const Diagnostics others = chosen(all, [](DiagnosticCode code) { return !makes_results_wrong(code); });
+  print_notes(others, false, arguments.verbose ? others.size() : 5);
 }
 
 // Warns of results that miss the requested accuracy.

@@ -232,11 +232,13 @@ void print_note_on_accuracy(const Request& request, bool quiet) {
 }
 
 void print_notes(const Diagnostics& notes, bool quiet, std::size_t most) {
+  for (const Diagnostic& warning : chosen(notes, makes_results_wrong)) print_diagnostic("warning", warning);
   if (quiet) return;
-  const std::size_t shown = std::min(most, notes.size());
-  for (std::size_t k = 0; k < shown; ++k) print_diagnostic("note", notes[k]);
-  if (shown < notes.size())
-    print_message("note", std::to_string(notes.size() - shown) +
+  const Diagnostics others = chosen(notes, [](DiagnosticCode code) { return !makes_results_wrong(code); });
+  const std::size_t shown = std::min(most, others.size());
+  for (std::size_t k = 0; k < shown; ++k) print_diagnostic("note", others[k]);
+  if (shown < others.size())
+    print_message("note", std::to_string(others.size() - shown) +
                               " more notes\nhint: --verbose prints them, --json FILE has them");
 }
 

@@ -17,7 +17,8 @@ Diagnostics notes(const Scene& scene, const Simulation& simulation);
 /// Prints the requested accuracy, if any, at the start of a run.
 void print_note_on_accuracy(const Request& request, bool quiet);
 
-/// Prints the first `most` notes and the number of the others, unless the run is quiet.
+/// Prints the warnings among the notes, see makes_results_wrong(). Unless the run is quiet, also prints the first
+/// `most` of the others, and the number of the rest.
 void print_notes(const Diagnostics& notes, bool quiet, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// The requested results: a line for each group of sensors, and the estimated errors. `how_to_know_errors` explains how

@@ -221,7 +221,7 @@ struct SeenPatch {
   Spectrum hidden;  // the weight times the share of the patch that is not visible
 };
 
-// What all sensors of a run share.
+// The data that all sensors of a run share.
 struct Gather {
   const Light& light;
   const ShadowRays& shadow_rays;

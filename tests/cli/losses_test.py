@@ -1,4 +1,4 @@
-"""Every command that computes light warns of faces missing from its model, even with --quiet."""
+"""Commands warn of findings that can make all results wrong, even with --quiet: lost faces, an implausible unit."""
 import unittest
 
 from support import ToolTest
@@ -33,6 +33,18 @@ class LossesTest(ToolTest):
                 self.assertEqual(len(self.warnings(command, name, *words)), expected, f"{command} {name}")
         # Stored form factors remember the missing faces.
         self.assertEqual(len(self.warnings("relight", "factors", "-o", "again.vtp")), 1)
+
+    def test_solve_warns_of_a_scene_file_whose_unit_is_not_that_of_its_model(self):
+        # The room of 2 m in millimeters: the unit of a scene file holds for its own lengths alone.
+        lines = (self.folder / "room.obj").read_text().splitlines()
+        self.write("mm.obj", "\n".join(
+            "v " + " ".join(str(1000 * float(word)) for word in line.split()[1:]) if line.startswith("v ") else line
+            for line in lines) + "\n")
+        for of_model, expected in (("", 1), ('unit = "mm"\n', 0)):
+            self.write("scene.toml", f'unit = "mm"\n[[model]]\nfile = "mm.obj"\n{of_model}')
+            warnings = self.warnings("solve", "scene.toml", "--patches", 40, "-o", "out.vtp")
+            self.assertEqual(len(warnings), expected, warnings)
+            self.assertTrue(all("implausible_size" in warning for warning in warnings))
 
 
 if __name__ == "__main__":

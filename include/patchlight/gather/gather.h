@@ -26,9 +26,9 @@ struct RadiosityErrors {
 
 /// How the light at sensors is sampled.
 struct GatherOptions {
-  int least_rays = 4;          ///< shadow rays to a bright patch before the sensor, unless these are too many
-  int rays = 4096;             ///< to bright patches, in proportion to their possible light; as many over the hemisphere
-  int most_rays = 1 << 18;     ///< if the relative standard error is above wanted_error
+  int least_rays = 4;       ///< shadow rays to a bright patch before the sensor, unless these are too many
+  int rays = 4096;          ///< to bright patches, in proportion to their possible light; as many over the hemisphere
+  int most_rays = 1 << 18;  ///< if the relative standard error is above wanted_error
   double wanted_error = 0.01;  ///< requested relative standard error of a sensor
   std::uint64_t seed = 1;
   bool slopes = true;  ///< light varies along patches; else each is even, and readings are linear in radiosity
@@ -56,14 +56,14 @@ struct GatheredIrradiance {
 /// Computes irradiance at points by gathering the solved radiosity, in two parts.
 /// - Bright patches: their radiosity exceeds twice the irradiance that a few first rays find at the sensor. Each
 ///   contributes its closed-form form factor times its visible fraction by shadow rays. The number of rays depends on
-///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. Of very many bright
-///   patches some are chosen at random.
+///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. If there are very
+///   many, some are chosen at random.
 /// - All others: by rays over the hemisphere, distributed as the cosine.
 /// In a mesh of at most rays / least_rays patches all count as bright, so that sensors without occluders are exact.
 ///
 /// Rays form replicates with independent random shifts, whose scatter gives the standard error. Its lower bound is the
-/// heaviest ray of those bright patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with too
-/// large a standard error get more rays, in proportion to its square. The random numbers depend on the place of the
+/// heaviest ray of those bright patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with
+/// too large a standard error get more rays, in proportion to its square. The random numbers depend on the place of the
 /// sensor.
 ///
 /// On each patch the radiosity is linear, with slopes fitted to the means of surrounding patches. The nonlinear part is
