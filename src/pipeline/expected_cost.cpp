@@ -96,11 +96,11 @@ double seconds_of_direct_light(const Scene& scene, const Plan& plan) {
   return 2.2e-7 * rays;
 }
 
-// A sensor sends four rays to each patch before it, some thousands more to all together, and by daylight, which comes
-// through few openings, many more: measured in models of docs/benchmarks/real-models.md.
+// A sensor compares the radiosity of each patch with a limit and sends some thousands of rays. By daylight, which comes
+// through few openings, it sends many more: measured in models of docs/benchmarks/real-models.md.
 double seconds_of_a_sensor(const Scene& scene, const Plan& plan, double patches) {
   const bool by_day = (scene.sky && simulates(plan, Effect::sky)) || (scene.sun && simulates(plan, Effect::sun));
-  return 1.2e-3 + 3.4e-7 * patches + (by_day ? 1.4e-2 : 0);
+  return 1.5e-3 + 2.5e-8 * patches + (by_day ? 1.4e-2 : 0);
 }
 
 }  // namespace
