@@ -453,7 +453,7 @@ Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
 Reading read_sensor(const Gather& gather, const Sensor& sensor) {
   const Spectrum limit = limit_of_bright(gather, sensor);
   const Sources sources = sources_before(sensor, gather.light.mesh, gather.light.radiosity, limit, gather.tolerance());
-  const Reading first = estimate(gather, sensor, sources, limit, 1, 0);
+  Reading first = estimate(gather, sensor, sources, limit, 1, 0);
   const double more =
       std::min((wanted_factor(first, gather.options) - 1) * first.rays, gather.options.most_rays - first.rays);
   if (!(more > first.rays / 2)) return first;
