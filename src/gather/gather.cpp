@@ -303,8 +303,10 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
   const Spectrum possible = found.unoccluded + limit / bright_factor;
   const double share = (possible > 0).select(found.unoccluded / possible, 0.0).maxCoeff();
   const double rays = times * share * gather.options.rays;
-  const double least = times * gather.options.least_rays;
-  const bool all = least * static_cast<double>(sources.size()) <= rays;
+  const double least = gather.options.least_rays;
+  const auto count = static_cast<double>(sources.size());
+  const bool all = least * count <= rays;
+  const double each = all ? std::min(times * least, rays / std::max(1.0, count)) : least;
   double form_factors = 0;
   for (const Source& source : sources) form_factors += source.form_factor;
   std::vector<ChosenSource> chosen;
@@ -313,7 +315,7 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
     const double probability = all ? 1 : std::min(1.0, wanted / least);
     const double u = hash({key, stream::choice_of_bright_patch, source.patch}) * 0x1p-32;
     if (u >= probability) continue;
-    chosen.push_back({&source, ray_counts(all ? least + wanted : std::max(least, wanted)), probability});
+    chosen.push_back({&source, ray_counts(all ? each + wanted : std::max(each, wanted)), probability});
   }
   return chosen;
 }
@@ -337,7 +339,7 @@ void add_bright_patches(const Gather& gather, const Sensor& sensor, const Source
       const Eigen::Vector4d plane = factor[band] * plane_of(gather.light, source->patch, band);
       const double sent = plane.dot(share.moments);
       reading.mean[band] += sent;
-      reading.variance[band] += plane.dot(share.covariance * plane) + (1 - probability) * sent * sent;
+      reading.variance[band] += probability * plane.dot(share.covariance * plane) + (1 - probability) * sent * sent;
     }
     reading.rays += share.rays;
     if (!(share.covariance(0, 0) > 0))
