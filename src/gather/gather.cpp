@@ -294,9 +294,9 @@ Eigen::Vector4d plane_of(const Light& light, PatchIndex j, Eigen::Index band) {
 // as they are stratified.
 constexpr double bright_factor = 2;
 
-// Rays by the part of the light that bright patches may give. Half of them go by light, half by form factor: a lamp
-// that is hidden does not take all rays. A patch that would get fewer than the least number gets that, or none, with a
-// probability that keeps the mean.
+// Bright patches share the rays in proportion to their possible light. Half of them go by light, half by form factor: a
+// lamp that is hidden does not take all rays. A patch that would get fewer than the least number gets that, or none,
+// with a probability that keeps the mean.
 std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& limit, const Gather& gather,
                                          double times, std::uint64_t key) {
   const std::span<const Source> sources = found.bright;
@@ -322,7 +322,8 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
 
 // E = sum_j F(x, j) (B_j V_j + g_j . m_j) / p_j, V_j the visible share, m_j its first moment and p_j the probability of
 // rays to j; and its variance (Horvitz and Thompson 1952). Rays to a patch that agree may miss what the others of it
-// would meet: of all such rays the heaviest counts as an error.
+// would meet: of all such rays the heaviest counts as an error. A patch that stands for others counts as a whole, as
+// those may be visible.
 void add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources, const Spectrum& limit,
                         double times, std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
   const std::vector<ChosenSource> chosen =
@@ -343,7 +344,7 @@ void add_bright_patches(const Gather& gather, const Sensor& sensor, const Source
     }
     reading.rays += share.rays;
     if (!(share.covariance(0, 0) > 0))
-      heaviest = heaviest.max(factor * gather.light.radiosity.row(source->patch) / share.rays);
+      heaviest = heaviest.max(factor * gather.light.radiosity.row(source->patch) / (probability < 1 ? 1 : share.rays));
     if (!(share.mean() > 0)) continue;
     const Spectrum weight = factor * share.mean();
     errors.add({source->patch, weight, probability * weight.square(), weight * std::max(0.0, 1 - share.mean())});
@@ -440,7 +441,8 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
   return std::max(1.0, factor.maxCoeff());
 }
 
-// The radiosity above which patches count as bright at a sensor, by few rays that take no other part. All patches do
+// The radiosity above which patches count as bright at a sensor. A few pilot rays estimate it; the reading does not use
+// them. All patches do
 // where the mesh is so small that each may get its own rays.
 Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
   constexpr std::uint32_t each = 32;

@@ -48,7 +48,7 @@ Field sensor_factors(const TransportProblem& problem, const Observer& observer) 
   Field factors =
       gather_irradiance(
           problem.mesh, one_each, occluder, sensors,
-          {.rays = std::max(4096, 8 * static_cast<int>(patches)), .seed = problem.plan.assembly.seed, .slopes = false},
+          {.rays = std::max(8192, 8 * static_cast<int>(patches)), .seed = problem.plan.assembly.seed, .slopes = false},
           observer)
           .irradiance;
   for (std::size_t k = 0; k < places.size(); ++k) {

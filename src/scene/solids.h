@@ -47,8 +47,8 @@ std::vector<Point> corners_before(const Scene& scene, PolygonIndex polygon, Side
 /// At 2 * polygon + side 1 when the side belongs to one of these solids and faces its inside.
 std::vector<std::uint8_t> inner_sides(const Scene& scene, const Shells& shells, std::span<const Solid> solids);
 
-/// The shells of a scene and the solids of those that are closed. kept_sides() computes them once for a scene that is
-/// ready; all that needs them takes them from KeptSides.
+/// The shells of a scene and the solids of those that are closed. Computed once for a scene that is ready, by
+/// kept_sides() or sides_for(); all later steps take them from KeptSides.
 struct SceneGeometry {
   Shells shells;
   std::vector<Solid> solids;

@@ -38,7 +38,7 @@ struct GatherOptions {
 
 /// Standard errors of irradiances by source, W/m^2.
 struct SensorErrors {
-  Field rays;      ///< shadow rays from the sensor
+  Field rays;      ///< rays from the sensor
   Field sampling;  ///< of the sampled light that patches reflect
   Field mesh;      ///< from the linear light on each patch, and the errors of the patches
   Field solver;    ///< a bound

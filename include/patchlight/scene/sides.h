@@ -38,7 +38,7 @@ struct KeptSides {
   std::vector<DarkSolid> dark_solids = {};
   std::size_t unreached = 0;    ///< sides that face the inside of one
   std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid, or nothing at all
-  std::shared_ptr<const SceneGeometry> geometry = {};  ///< the solids that decided this; null where none did
+  std::shared_ptr<const SceneGeometry> geometry = {};  ///< shells and solids of the scene; null: not computed
 };
 
 /// Sides that no light reaches and that are kept nevertheless.
