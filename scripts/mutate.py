@@ -4,9 +4,9 @@
 usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...]
        [--commands A,B,...] [--keep FOLDER]
 
-Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, words exchanged,
-brackets piled up) and given to check, plan, solve, relight or render. A run is bad in five cases: a signal ends the tool;
-it takes over 20 s of the processor; its exit code is not documented, or 70, which stands for a defect; it fails without
+Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, words by
+others of the file, brackets piled up) and given to check, plan, solve, relight or render. A run is bad if a signal ends the tool;
+it takes over 20 s of the processor or never ends; its exit code is not documented, or 70, which stands for a defect; it fails without
 a message; it succeeds and prints a nan. The tool may be any build, also one with sanitizers. --commands check,plan tries
 the readers alone, in a fraction of the time. Run number k of a seed is always the same, so that many can be made in
 pieces, each from --first on. A line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default:
@@ -222,7 +222,7 @@ def fault_of(code, said, printed):
     if code not in DOCUMENTED:
         return f"exit code {code}"
     if code == 0:
-        return "prints a nan" if NAN.search(QUOTED.sub(b"", printed + said)) else None
+        return "prints a nan" if NAN.search(printed + QUOTED.sub(b"", said)) else None
     return None if MESSAGE.search(said) else "no message"
 
 

@@ -442,8 +442,7 @@ double wanted_factor(const Reading& reading, const GatherOptions& options) {
 }
 
 // The radiosity above which patches count as bright at a sensor. A few pilot rays estimate it; the reading does not use
-// them. All patches do
-// where the mesh is so small that each may get its own rays.
+// them. It is 0 where the mesh is so small that each patch may get its own rays.
 Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
   constexpr std::uint32_t each = 32;
   Spectrum sum = Spectrum::Zero(gather.light.radiosity.cols());

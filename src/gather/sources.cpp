@@ -56,7 +56,7 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   }
   const auto count = static_cast<double>(replicates.size());
   share.covariance *= count / (count - 1);
-  share.colour = reached[0] > 0 ? Spectrum(by_band / reached[0]) : by_band;
+  share.colour = reached[0] > 0 ? Spectrum(by_band / reached[0]) : Spectrum::Ones(by_band.size());
   return share;
 }
 
