@@ -152,7 +152,7 @@ std::vector<Ray> Gather::hemisphere_rays(PatchIndex patch) const {
 // Clear polygons let the same rays of all quarters through.
 std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& rays) const {
   const std::uint32_t of_patch = seed_of(patch, stream::clear_at_quarters);
-  if (occluder_.specular_faces().empty()) return sights_.of_rays(patch, rays, of_patch);
+  if (occluder_.optics().empty()) return sights_.of_rays(patch, rays, of_patch);
   std::vector<Seen> seen;
   for (auto first = rays.begin(); first != rays.end(); first += rays_.rays) {
     const std::vector<Seen> of_quarter = sights_.of_rays(patch, {first, first + rays_.rays}, of_patch);

@@ -12,7 +12,7 @@
 #include "output/file/whole_file.h"
 #include "output/mesh/write_mesh.h"
 #include "plan/planned_scene.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 #include "transport/ray_transport.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ constexpr std::uint32_t way_of_finding = 2;
 
 std::string bytes_of_faces(const Scene& scene) {
   std::string bytes;
-  const SpecularFaces specular(scene, Reflections::followed);
+  const SurfaceOptics specular(scene, Reflections::followed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Vector normal = front_normal(scene, p);
     for (const Side side : {Side::front, Side::back}) append_bytes(bytes, specular.held(p, side));
@@ -495,7 +495,7 @@ void write_ray_rows(const std::filesystem::path& folder, const Scene& scene, con
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Canceled();
   };
   const TracedRows& rows = found.exchange.rows;
-  const RowsByClass by_class = rows_by_class(rows, scene, SpecularFaces(scene, reflections_of(found.plan)));
+  const RowsByClass by_class = rows_by_class(rows, scene, SurfaceOptics(scene, reflections_of(found.plan)));
   write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
     for (std::size_t half = 0; half < 2; ++half) {
       tell(0.4 * static_cast<double>(half));

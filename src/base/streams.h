@@ -27,16 +27,17 @@ enum Stream : std::uint64_t {
   signs_of_lights = 0x64726178,
   signs_of_row_sums = 0x726f77,
 
-  // Light in mirrors: shared points, and the shift of each receiver or sensor. Direct light shifts the points of its
+  // Light in mirrors: shared points, and the shift of each receiver. Direct light shifts the points of its
   // sources by their index in place of a stream.
   points_of_mirror_chains = 7,
   shift_at_receiver = 0x73686966,
-  points_of_mirrored_sensors = 9,
-  shift_at_mirrored_sensor = 10,
 
   // Irradiance at sensors: rays of the hemisphere, and the choice of bright patches
   hemisphere_of_sensor = 0x68656d69,
   choice_of_bright_patch = 0x62726967,
+
+  // Russian roulette along specular paths
+  survival_of_path = 0x726f756c,
 
   // Quarters of patches
   lamps_at_quarters = 1,

@@ -8,7 +8,7 @@
 #include "input/text.h"
 #include "output/file/whole_file.h"
 #include "plan/choose_storage.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include <cmath>
 #include <sstream>
@@ -44,7 +44,7 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
 using HeldShares = std::vector<std::array<double, 2>>;
 
 HeldShares held_shares(const Scene& scene, Reflections reflections) {
-  const SpecularFaces specular(scene, reflections);
+  const SurfaceOptics specular(scene, reflections);
   HeldShares held;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
     held.push_back({specular.held(p, Side::front), specular.held(p, Side::back)});

@@ -194,6 +194,7 @@ struct Light {
   const FieldView& radiosity;
   const Slopes slopes;
   const RadiosityErrors& errors;
+  const FieldView* mirrored;  // the part that mirrors show; null if nothing is mirrored
 };
 
 // Irradiance at one sensor.
@@ -213,12 +214,13 @@ constexpr std::array parts_of_reading = {&Reading::mean,   &Reading::variance, &
                                          &Reading::mesh,   &Reading::solver,   &Reading::unexplained,
                                          &Reading::hidden, &Reading::reflected};
 
-// A patch as a sensor sees it. All values are unbiased estimates per band.
+// A patch as a sensor sees it, per band.
 struct SeenPatch {
   PatchIndex patch = 0;
-  Spectrum weight;  // irradiance by a radiosity of 1
-  Spectrum square;  // of the weight
-  Spectrum hidden;  // the weight times the share of the patch that is not visible
+  Spectrum weight;               // irradiance by a radiosity of 1
+  Spectrum square;               // of the weight
+  Spectrum hidden;               // the weight times the share of the patch that is not visible
+  double squared_unevenness = 0;  // squared_unevenness()
 };
 
 // The data that all sensors of a run share.
@@ -235,17 +237,16 @@ struct Gather {
 
 // How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. From afar all
 // points of the patch count alike. Close by the nearest points alone count.
-double squared_unevenness(const PatchMesh& mesh, PatchIndex j, const Point& from) {
+double squared_unevenness(const PatchMesh& mesh, PatchIndex j, double squared_distance) {
   const double longest = longest_edge_squared(mesh.corner_points(j));
-  return longest / (longest + (mesh.centroid[j] - from).squaredNorm());
+  return longest / (longest + squared_distance);
 }
 
 // The errors of patches, as a sensor sees them.
 class ErrorsOfPatches {
  public:
-  ErrorsOfPatches(const Light& light, const Sensor& sensor, Reading& reading)
+  ErrorsOfPatches(const Light& light, Reading& reading)
       : light_(light),
-        sensor_(sensor),
         reading_(reading),
         draws_(Field::Zero(static_cast<Eigen::Index>(light.errors.correlated.size()), reading.mean.size())) {}
 
@@ -256,7 +257,6 @@ class ErrorsOfPatches {
 
  private:
   const Light& light_;
-  const Sensor& sensor_;
   Reading& reading_;
   Field draws_;  // per draw of the correlated errors
 };
@@ -273,7 +273,7 @@ void ErrorsOfPatches::add(const SeenPatch& seen) {
   const Slopes& slopes = light_.slopes;
   if (slopes.residual.size() == 0) return;
   // Even curvature has no first moment about the plane, so that it counts in the second order.
-  const double squared = squared_unevenness(light_.mesh, j, sensor_.point);
+  const double squared = seen.squared_unevenness;
   const Spectrum by_points = (squared * slopes.residual.row(j)).max(std::sqrt(squared) * slopes.unknown.row(j));
   reading_.unexplained += seen.square * by_points.square();
   // Let radiosity vary linearly with standard deviation sigma. Its mean over an end of share v differs from the patch's
@@ -281,9 +281,9 @@ void ErrorsOfPatches::add(const SeenPatch& seen) {
   reading_.hidden += seen.hidden * slopes.residual.row(j).max(std::numbers::sqrt3 * slopes.unknown.row(j));
 }
 
-// The plane of a patch's radiosity in one band: its mean and its gradient.
-Eigen::Vector4d plane_of(const Light& light, PatchIndex j, Eigen::Index band) {
-  Eigen::Vector4d plane(light.radiosity(j, band), 0, 0, 0);
+// The plane of a patch's radiosity in one band, directly or in mirrors: its mean and its gradient.
+Eigen::Vector4d plane_of(const Light& light, PatchIndex j, Eigen::Index band, bool is_mirrored = false) {
+  Eigen::Vector4d plane(is_mirrored ? (*light.mirrored)(j, band) : light.radiosity(j, band), 0, 0, 0);
   if (light.slopes.gradient.size() > 0)
     plane.tail<3>() = light.slopes.gradient.row(j).segment(3 * band, 3).matrix().transpose();
   return plane;
@@ -346,48 +346,53 @@ void add_bright_patches(const Gather& gather, const Sensor& sensor, const Source
     if (!(share.covariance(0, 0) > 0))
       heaviest = heaviest.max(factor * gather.light.radiosity.row(source->patch) / (probability < 1 ? 1 : share.rays));
     if (!(share.mean() > 0)) continue;
+    const PatchMesh& mesh = gather.light.mesh;
     const Spectrum weight = factor * share.mean();
-    errors.add({source->patch, weight, probability * weight.square(), weight * std::max(0.0, 1 - share.mean())});
+    const double squared_distance = (mesh.centroid[source->patch] - sensor.point).squaredNorm();
+    errors.add({source->patch, weight, probability * weight.square(), weight * (1 - share.visible),
+                squared_unevenness(mesh, source->patch, squared_distance)});
   }
   reading.variance += heaviest.square();
 }
 
-// The share of light that arrives from a hit, per band.
-Spectrum share_of(const HemisphereHit& hit, Eigen::Index bands) {
-  return hit.by_band.size() > 0 ? hit.by_band : Spectrum::Constant(bands, hit.arriving);
+// An unbiased estimate of the product of two means from their sums over independent replicates (rows).
+Spectrum product_of_means(const Field& a, const Field& b) {
+  const Spectrum all = a.colwise().sum() * b.colwise().sum();
+  return (all - (a * b).colwise().sum()) * most_replicates / (most_replicates - 1.0);
 }
 
-// The errors of the patches that rays meet; hits on one patch stand side by side. Products of different rays estimate
-// the square of a weight: (sum^2 - sum of squares) / n^2.
-void add_errors(const Gather& gather, const Sensor& sensor, std::span<const HemisphereHit> hits, double rays,
-                Eigen::Index bands, ErrorsOfPatches& errors) {
+// The errors of a patch that paths meet. The visible share is that of straight rays without their losses in panes.
+void add_errors(const Gather& gather, const Sensor& sensor, std::span<const HemisphereHit> hits,
+                ErrorsOfPatches& errors) {
   const PatchMesh& mesh = gather.light.mesh;
-  for (std::size_t k = 0; k < hits.size();) {
-    const PatchIndex j = hits[k].patch;
-    Spectrum sum = Spectrum::Zero(bands), squares = sum;
-    for (; k < hits.size() && hits[k].patch == j; ++k) {
-      const Spectrum share = share_of(hits[k], bands);
-      sum += share;
-      squares += share.square();
-    }
-    const Spectrum weight = sum / rays;
-    const Spectrum square = (sum.square() - squares) / (rays * rays);
-    const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline_above_horizon(mesh, j, sensor));
-    errors.add({j, weight, square, form_factor > 0 ? Spectrum(weight - square / form_factor) : weight});
+  const PatchIndex j = hits.front().patch;
+  const Field none = Field::Zero(most_replicates, hits.front().weight.size());
+  Field weights = none, straight = none, form_factors = none;
+  double unevenness = 0, sum = 0;
+  for (const HemisphereHit& hit : hits) {
+    weights.row(hit.replicate) += hit.weight;
+    unevenness += hit.form_factor * squared_unevenness(mesh, j, hit.distance * hit.distance);
+    sum += hit.form_factor;
+    if (hit.is_mirrored) continue;
+    straight.row(hit.replicate) += hit.weight;
+    form_factors.row(hit.replicate) += hit.form_factor;
   }
+  Spectrum hidden = straight.colwise().sum();
+  const double unoccluded = point_to_polygon(sensor.point, sensor.normal, outline_above_horizon(mesh, j, sensor));
+  if (unoccluded > 0) hidden -= product_of_means(straight, form_factors) / unoccluded;
+  errors.add({j, weights.colwise().sum(), product_of_means(weights, weights), hidden, unevenness / sum});
 }
 
-// E = sum over rays of T (B_j + g_j . (y - c_j)) / n at the points y that rays meet, except on bright patches.
+// E = sum over rays of w (B_j + g_j . (y - c_j)) at the points y that paths meet. Bright patches count in mirrors alone.
 void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectrum& limit, double times,
                        std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
   const PatchMesh& mesh = gather.light.mesh;
   const FieldView& radiosity = gather.light.radiosity;
   const auto each = static_cast<std::uint32_t>(std::ceil(std::max(2.0, times * gather.options.rays / most_replicates)));
-  const auto rays = static_cast<double>(each * most_replicates);
   std::vector<HemisphereHit> hits = gather.hemisphere.hits(sensor, each, stage);
   std::erase_if(hits, [&](const HemisphereHit& hit) {
     const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
-    return (radiosity.row(hit.patch) > limit).any() || height <= gather.tolerance();
+    return !hit.is_mirrored && ((radiosity.row(hit.patch) > limit).any() || height <= gather.tolerance());
   });
   const Eigen::Index bands = reading.mean.size();
   Field means = Field::Zero(most_replicates, bands);
@@ -395,17 +400,21 @@ void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectru
     Eigen::Vector4d place(1, 0, 0, 0);
     place.tail<3>() = hit.point - mesh.centroid[hit.patch];
     for (Eigen::Index band = 0; band < bands; ++band) {
-      const double share = hit.by_band.size() > 0 ? hit.by_band[band] : hit.arriving;
-      means(hit.replicate, band) += share / each * plane_of(gather.light, hit.patch, band).dot(place);
+      const Eigen::Vector4d plane = plane_of(gather.light, hit.patch, band, hit.is_mirrored);
+      means(hit.replicate, band) += most_replicates * hit.weight[band] * plane.dot(place);
     }
   }
   const Spectrum mean = means.colwise().mean();
   reading.mean += mean;
   reading.variance += (means.rowwise() - mean).square().colwise().sum() / (most_replicates * (most_replicates - 1.0));
-  reading.rays += rays;
+  reading.rays += each * most_replicates;
   std::stable_sort(hits.begin(), hits.end(),
                    [](const HemisphereHit& a, const HemisphereHit& b) { return a.patch < b.patch; });
-  add_errors(gather, sensor, hits, rays, bands, errors);
+  for (auto first = hits.begin(); first != hits.end();) {
+    const auto last = std::find_if(first, hits.end(), [&](const auto& hit) { return hit.patch != first->patch; });
+    add_errors(gather, sensor, {first, last}, errors);
+    first = last;
+  }
 }
 
 // One estimate, with `times` as many rays as the options have.
@@ -413,9 +422,9 @@ Reading estimate(const Gather& gather, const Sensor& sensor, const Sources& sour
                  double times, std::uint32_t stage) {
   Reading reading;
   for (Spectrum Reading::*const part : parts_of_reading) reading.*part = Spectrum::Zero(limit.size());
-  ErrorsOfPatches errors(gather.light, sensor, reading);
+  ErrorsOfPatches errors(gather.light, reading);
   add_bright_patches(gather, sensor, sources, limit, times, stage, reading, errors);
-  if (sources.is_rest_lit) add_other_patches(gather, sensor, limit, times, stage, reading, errors);
+  if (sources.is_rest_lit || gather.light.mirrored != nullptr) add_other_patches(gather, sensor, limit, times, stage, reading, errors);
   errors.finish();
   reading.hidden = reading.hidden.max(0);
   return reading;
@@ -449,8 +458,8 @@ Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
   const auto least = static_cast<double>(gather.options.least_rays) * gather.light.mesh.size();
   if (least <= gather.options.rays) return sum;
   for (const HemisphereHit& hit : gather.hemisphere.hits(sensor, each, 2))
-    sum += hit.arriving * gather.light.radiosity.row(hit.patch);
-  return bright_factor * sum / (each * most_replicates);
+    if (!hit.is_mirrored) sum += hit.weight * gather.light.radiosity.row(hit.patch);
+  return bright_factor * sum;
 }
 
 Reading read_sensor(const Gather& gather, const Sensor& sensor) {
@@ -490,11 +499,13 @@ Field SensorErrors::total() const {
 GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& radiosity, const Occluder& occluder,
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
-  const ShadowRays shadow_rays(mesh, occluder, options.seed, options.coloured);
-  const HemisphereRays hemisphere(mesh, occluder, options.seed, options.coloured);
+  const SurfaceOptics& optics = options.paths != nullptr ? *options.paths->optics() : occluder.optics();
+  const ShadowRays shadow_rays(mesh, occluder, options.seed, optics.is_coloured() ? options.paths : nullptr);
+  const HemisphereRays hemisphere(mesh, occluder, optics, options.seed, options.aim);
+  const FieldView mirrored = options.mirrored_light != nullptr ? FieldView(*options.mirrored_light) : radiosity;
   const Light light{mesh, radiosity,
                     options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
-                    options.errors};
+                    options.errors, optics.mirrors() ? &mirrored : nullptr};
   const Gather gather{light, shadow_rays, hemisphere, options, occluder.frame()};
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer,

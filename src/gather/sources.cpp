@@ -3,6 +3,7 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "form_factor/point_polygon.h"
+#include "visibility/walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,7 @@ double shifted(double u, std::uint32_t shift) {
 // Sums of cosine times solid angle over the rays of one replicate.
 struct Weights {
   Eigen::Vector4d reached = Eigen::Vector4d::Zero();  // and times the way from the patch's centroid
+  double visible = 0;  // of the rays that nothing opaque blocks
   double all = 0;
   Spectrum by_band = {};  // what is reached in each band, where these differ
 };
@@ -39,10 +41,12 @@ struct Weights {
 // 1977, section 6.4).
 VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   Eigen::Vector4d reached = Eigen::Vector4d::Zero();
+  double visible = 0;
   double all = 0;
   Spectrum by_band = Spectrum::Zero(replicates[0].by_band.size());
   for (const Weights& one : replicates) {
     by_band += one.by_band;
+    visible += one.visible;
     reached += one.reached;
     all += one.all;
   }
@@ -50,6 +54,7 @@ VisibleShare share_of(std::span<const Weights> replicates, double rays) {
   share.rays = rays;
   if (!(all > 0)) return share;
   share.moments = reached / all;
+  share.visible = visible / all;
   for (const Weights& one : replicates) {
     const Eigen::Vector4d off = (one.reached - share.moments * one.all) / all;
     share.covariance += off * off.transpose();
@@ -105,78 +110,62 @@ std::uint64_t key_of(const Sensor& sensor, const TracingFrame& frame, std::uint6
   return hash({seed, key_of(frame.scale * (sensor.point - frame.centre)), key_of(sensor.normal), stage});
 }
 
-HemisphereRays::HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed,
-                               const LightPaths* coloured)
+HemisphereRays::HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, const SurfaceOptics& optics,
+                               std::uint64_t seed, const SpecularAim* aim)
     : mesh_(mesh),
       occluder_(occluder),
-      coloured_(coloured),
+      optics_(optics),
+      aim_(aim),
       seed_(seed),
       lookup_(mesh),
       points_(scrambled_sobol(most_points, hash({seed, stream::hemisphere_of_sensor}))) {}
 
 // Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
-std::vector<Ray> HemisphereRays::rays(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
-  const std::uint64_t key = hash({key_of(sensor, occluder_.frame(), seed_, stage), stream::hemisphere_of_sensor});
-  std::vector<Ray> rays;
-  rays.reserve(std::size_t{most_replicates} * each);
-  for (std::uint32_t r = 0; r < most_replicates; ++r) {
-    std::array<std::uint32_t, 2> shift{};
-    for (std::uint32_t k = 0; k < each; ++k) {
-      if (k % most_points == 0)
-        for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, 2 * r + d, k / most_points});
-      const auto& point = points_[k % most_points];
-      rays.push_back(
-          {sensor.point, cosine_direction(sensor.normal, shifted(point[0], shift[0]), shifted(point[1], shift[1]))});
-    }
+std::vector<std::array<double, 2>> HemisphereRays::samples(std::uint64_t key, std::uint32_t replicate,
+                                                           std::uint32_t count) const {
+  std::vector<std::array<double, 2>> samples;
+  samples.reserve(count);
+  std::array<std::uint32_t, 2> shift{};
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (k % most_points == 0)
+      for (std::uint32_t d = 0; d < 2; ++d) shift[d] = hash({key, 2 * replicate + d, k / most_points});
+    const auto& point = points_[k % most_points];
+    samples.push_back({shifted(point[0], shift[0]), shifted(point[1], shift[1])});
   }
-  return rays;
+  return samples;
 }
 
 std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
-  std::vector<Ray> rays = this->rays(sensor, each, stage);
-  std::vector<std::uint32_t> replicate(rays.size());
-  for (std::size_t k = 0; k < rays.size(); ++k) replicate[k] = static_cast<std::uint32_t>(k / each);
+  const std::uint64_t key = hash({key_of(sensor, occluder_.frame(), seed_, stage), stream::hemisphere_of_sensor});
+  const SurfacePoint at{sensor.point, sensor.normal};
+  const std::uint32_t count = aim_ != nullptr && aim_->is_before(at) ? 2 * each : each;
   std::vector<HemisphereHit> found;
-  std::vector<std::size_t> behind_panes;  // those on clear polygons or beyond them
-  for (std::size_t passed = 0; !rays.empty() && passed < Occluder::most_meetings; ++passed) {
-    const std::vector<std::optional<Hit>> ends = occluder_.first_hits(rays);
-    std::vector<Ray> onward;
-    std::vector<std::uint32_t> replicate_onward;
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-      if (!ends[k]) continue;
-      const Hit& hit = *ends[k];
-      const SpecularFace* const face = occluder_.specular_faces().at(hit.polygon);
-      const bool is_clear = face != nullptr && face->is_clear();
-      if (const auto patch = lookup_.patch_at(hit.polygon, hit.side, hit.point)) {
-        if (is_clear || passed > 0) behind_panes.push_back(found.size());
-        found.push_back({*patch, replicate[k], hit.point});
-      }
-      if (!is_clear) continue;
-      onward.push_back({hit.point, rays[k].direction, hit.polygon});
-      replicate_onward.push_back(replicate[k]);
-    }
-    rays = std::move(onward);
-    replicate = std::move(replicate_onward);
+  for (std::uint32_t r = 0; r < most_replicates; ++r) {
+    std::vector<Ray> rays;
+    std::vector<double> form_factors;
+    const auto add = [&](const Ray& ray, double weight) {
+      rays.push_back(ray);
+      form_factors.push_back(weight / (std::numbers::pi * most_replicates));  // L = B / pi
+    };
+    const std::vector<std::array<double, 2>> samples = this->samples(key, r, count);
+    if (aim_ != nullptr)
+      for (const auto& [ray, weight] : aim_->rays(at, samples)) add(ray, weight);
+    else
+      for (const auto& [u, v] : samples)
+        add({sensor.point, cosine_direction(sensor.normal, u, v)}, std::numbers::pi / count);
+    walk(occluder_, optics_, std::move(rays), {.seed = hash({key, r})},
+         [&](const SpecularPath& path, const std::optional<Hit>& hit) {
+           if (!hit) return Continuation::ends;
+           const double form_factor = form_factors[path.start];
+           if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
+             found.push_back(
+                 {*patch, r, hit->point, path.distance + hit->distance, form_factor,
+                  form_factor * occluder_.relative_held(hit->polygon, hit->direction) * path.throughput,
+                  path.reflections > 0});
+           return Continuation::specular;
+         });
   }
-  return attenuated(std::move(found), sensor, behind_panes);
-}
-
-std::vector<HemisphereHit> HemisphereRays::attenuated(std::vector<HemisphereHit> hits, const Sensor& sensor,
-                                                      std::span<const std::size_t> behind_panes) const {
-  std::vector<Segment> segments;
-  for (const std::size_t k : behind_panes)
-    segments.push_back({sensor.point, hits[k].point, no_polygon, mesh_.polygon[hits[k].patch]});
-  const std::vector<float> arriving = occluder_.transmittance(segments);
-  const Field by_band = coloured_ != nullptr ? coloured_->transmittance(segments) : Field();
-  for (std::size_t s = 0; s < segments.size(); ++s) {
-    HemisphereHit& hit = hits[behind_panes[s]];
-    hit.arriving = static_cast<double>(arriving[s]);
-    if (coloured_ == nullptr) continue;
-    const Vector direction = (segments[s].to - segments[s].from).normalized();
-    hit.by_band =
-        occluder_.relative_held(segments[s].to_polygon, direction) * by_band.row(static_cast<Eigen::Index>(s));
-  }
-  return hits;
+  return found;
 }
 
 ShadowRays::ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured)
@@ -227,6 +216,7 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
     for (std::uint32_t r = 0; r < count.replicates; ++r) {
       for (std::uint32_t k = 0; k < count.each; ++k, ++ray) {
         replicates[r].all += weights[ray];
+        if (arriving[ray] > 0) replicates[r].visible += weights[ray];
         const double reached = static_cast<double>(arriving[ray]) * weights[ray];
         const Vector way = segments[ray].to - mesh_.centroid[chosen.source->patch];
         replicates[r].reached += reached * Eigen::Vector4d(1, way.x(), way.y(), way.z());

@@ -5,6 +5,7 @@
 #include "patchlight/scene/sensor.h"
 
 #include "lighting/light_paths.h"
+#include "lighting/mirror_paths.h"
 #include "mesh/patch_lookup.h"
 #include "visibility/occluder.h"
 
@@ -40,9 +41,10 @@ Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldV
 
 /// The estimate by shadow rays to a source, weighted by geometry terms.
 struct VisibleShare {
-  Eigen::Vector4d moments = Eigen::Vector4d::Zero();     ///< the share that is visible, and its first moments about the
+  Eigen::Vector4d moments = Eigen::Vector4d::Zero();     ///< the share that arrives, and its first moments about the
                                                          ///< patch's centroid, meters
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of these
+  double visible = 0;    ///< the share that nothing opaque hides
   double rays = 0;
   Spectrum colour = {};  ///< times which each band of the mean arrives; empty: 1
 
@@ -71,33 +73,35 @@ struct ChosenSource {
 /// A key of random numbers for a sensor, by its place and direction. Stages of one sensor have unrelated keys.
 std::uint64_t key_of(const Sensor& sensor, const TracingFrame& frame, std::uint64_t seed, std::uint32_t stage);
 
-/// Where a ray from a sensor meets a patch.
+/// A patch that a path from a sensor meets.
 struct HemisphereHit {
   PatchIndex patch = 0;
   std::uint32_t replicate = 0;
   Point point;
-  double arriving = 1;    ///< share of the light that gets through clear polygons
-  Spectrum by_band = {};  ///< the same of each band; empty where it is equal in all
+  double distance = 0;       ///< meters, along the path
+  double form_factor = 0;    ///< the ray's share of the irradiance by a radiosity of 1 if the way is free
+  Spectrum weight;           ///< the same after clear faces and mirrors on the way, per band
+  bool is_mirrored = false;  ///< the path has a reflection
 };
 
-/// Rays from sensors, distributed as the cosine over the hemisphere, in most_replicates independent replicates. They
-/// pass clear polygons, and meet the patches of these as well.
+/// Rays from sensors over the hemisphere, in most_replicates independent replicates. They are distributed as the cosine,
+/// or by SpecularAim, with twice as many rays. Paths continue through clear faces and mirrors.
 class HemisphereRays {
  public:
-  /// `coloured` as GatherOptions has it.
-  HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured);
+  /// `aim` may be null.
+  HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, const SurfaceOptics& optics, std::uint64_t seed,
+                 const SpecularAim* aim);
 
-  /// The hits of `each` rays of every replicate.
+  /// The hits of `each` rays of every replicate, or twice as many with an aim.
   std::vector<HemisphereHit> hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const;
 
  private:
-  std::vector<Ray> rays(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const;
-  std::vector<HemisphereHit> attenuated(std::vector<HemisphereHit> hits, const Sensor& sensor,
-                                        std::span<const std::size_t> behind_panes) const;
+  std::vector<std::array<double, 2>> samples(std::uint64_t key, std::uint32_t replicate, std::uint32_t count) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
-  const LightPaths* coloured_;
+  const SurfaceOptics& optics_;
+  const SpecularAim* aim_;
   std::uint64_t seed_;
   PatchLookup lookup_;
   std::vector<std::array<double, 4>> points_;
@@ -106,7 +110,7 @@ class HemisphereRays {
 /// Shadow rays from sensors to patches.
 class ShadowRays {
  public:
-  /// `coloured` as GatherOptions has it.
+  /// `coloured` has the paths of each band; null if all bands are alike.
   ShadowRays(const PatchMesh& mesh, const Occluder& occluder, std::uint64_t seed, const LightPaths* coloured = nullptr);
 
   /// The visible shares of the sources.

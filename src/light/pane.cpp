@@ -66,4 +66,48 @@ double transmittance(const Pane& pane, double cosine) { return unpolarised(pane,
 
 double specular_reflectance(const Pane& pane, double cosine) { return unpolarised(pane, cosine).reflected; }
 
+std::vector<Pane> panes_of(double index, const Spectrum& transmittance) {
+  std::vector<Pane> panes;
+  for (const double share : transmittance) panes.push_back(pane_of(index, share));
+  return panes;
+}
+
+Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = transmittance(panes[band], cosine);
+  return share;
+}
+
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
+  Spectrum share(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t band = 0; band < panes.size(); ++band)
+    share[static_cast<Eigen::Index>(band)] = specular_reflectance(panes[band], cosine);
+  return share;
+}
+
+double held_of(double specular) { return std::max(1e-6, 1 - specular); }
+
+double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.5) / cosine_steps; }
+
+// The irradiance up to a cosine is its square.
+double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
+
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on) {
+  Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t k = 0; k < cosine_steps; ++k) {
+    Spectrum onward = transmittance(panes, cosine_of_step(k));
+    if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
+    held += irradiance_of_step(k) * onward.unaryExpr(&held_of);
+  }
+  return held;
+}
+
+double hemispherical_reflectance(const Pane& pane) {
+  double reflected = 0;
+  for (std::size_t k = 0; k < cosine_steps; ++k)
+    reflected += irradiance_of_step(k) * specular_reflectance(pane, cosine_of_step(k));
+  return reflected;
+}
+
 }  // namespace patchlight

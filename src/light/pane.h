@@ -1,5 +1,10 @@
 #pragma once
 
+#include "patchlight/base/field.h"
+
+#include <cstddef>
+#include <vector>
+
 namespace patchlight {
 
 /// A thin plane-parallel pane with air on both sides, smooth and clear, for unpolarized light of one band. Its
@@ -20,5 +25,34 @@ double transmittance(const Pane& pane, double cosine);
 
 /// The specular reflectance. Its sum with the transmittance is 1 minus the absorbed fraction.
 double specular_reflectance(const Pane& pane, double cosine);
+
+/// The panes of a clear material, one per band: its index of refraction and its transmittances at normal incidence.
+std::vector<Pane> panes_of(double index, const Spectrum& transmittance);
+
+/// The transmittance per band.
+Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
+
+/// The specular reflectance per band.
+Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
+
+/// The fraction of light that is absorbed or scattered, where this fraction goes on specularly: at least 1e-6.
+double held_of(double specular);
+
+/// Midpoint rule for the mean over the hemisphere, weighted by the cosine. This number of steps gives the fraction that
+/// ordinary glass absorbs within 2e-6.
+inline constexpr std::size_t cosine_steps = 1024;
+
+/// The cosine at the middle of a step.
+double cosine_of_step(std::size_t step);
+
+/// The weight of a step. All weights add up to 1.
+double irradiance_of_step(std::size_t step);
+
+/// The mean over the hemisphere of the fraction that panes absorb or scatter, per band, weighted by the cosine.
+/// Reflections count as absorbed unless they go on.
+Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on = false);
+
+/// The same mean of the specular reflectance of one pane.
+double hemispherical_reflectance(const Pane& pane);
 
 }  // namespace patchlight

@@ -1,57 +1,19 @@
 #include "lighting/light_paths.h"
 
-#include "scene/specular_faces.h"
-
 #include <algorithm>
 
 namespace patchlight {
 
-PaneSides::PaneSides(const Scene& scene) : bands_(number_of_bands(scene)) {
-  for (const Material& material : scene.materials) {
-    panes_.push_back(panes_of(material));
-    mirrors_.push_back(material.specular_reflectance);
-  }
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    const bool is_clear = is_opening(scene, p);
-    const bool is_specular = is_clear || is_mirror(scene, p, Side::front) || is_mirror(scene, p, Side::back);
-    if (!is_specular) continue;
-    if (sides_.empty()) sides_.resize(scene.polygons.size());
-    const Polygon& polygon = scene.polygons[p];
-    sides_[p] = {front_normal(scene, p),
-                 {material_on(polygon, Side::front), material_on(polygon, Side::back)},
-                 is_clear,
-                 is_specular};
-  }
-}
-
-// Light meets a front against its normal.
-MaterialIndex PaneSides::material_met(const Sides& sides, const Vector& direction) const {
-  return sides.materials[sides.normal.dot(direction) < 0 ? 0 : 1];
-}
-
-Spectrum PaneSides::transmittance(PolygonIndex polygon, const Vector& direction) const {
-  const Sides& sides = sides_[polygon];
-  const std::vector<Pane>& panes = panes_[material_met(sides, direction)];
-  if (panes.empty()) return Spectrum::Zero(bands_);
-  return patchlight::transmittance(panes, cosine_between(sides.normal, direction));
-}
-
-Spectrum PaneSides::specular_reflectance(PolygonIndex polygon, const Vector& direction) const {
-  const Sides& sides = sides_[polygon];
-  const MaterialIndex met = material_met(sides, direction);
-  const std::vector<Pane>& panes = panes_[met];
-  if (sides.is_clear && !panes.empty())
-    return patchlight::specular_reflectance(panes, cosine_between(sides.normal, direction));
-  return !sides.is_clear && mirrors_[met].size() > 0 ? mirrors_[met] : Spectrum(Spectrum::Zero(bands_));
-}
-
 LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
-    : bounds_(bounds(scene)), opaque_(tracing.opaque_faces()), clear_(tracing.clear_faces()), panes_(scene) {}
+    : bounds_(bounds(scene)),
+      opaque_(tracing.opaque_faces()),
+      clear_(tracing.clear_faces()),
+      optics_(std::make_shared<const SurfaceOptics>(scene, tracing.reflections())) {}
 
 Field LightPaths::transmittance(std::span<const Segment> segments) const {
   const auto blocked = opaque_->occluded(segments);
   const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
-  Field share(static_cast<Eigen::Index>(segments.size()), panes_.bands());
+  Field share(static_cast<Eigen::Index>(segments.size()), optics_->bands());
   for (std::size_t k = 0; k < segments.size(); ++k) {
     auto row = share.row(static_cast<Eigen::Index>(k));
     if (meets_opening[k] && !blocked[k])
@@ -74,13 +36,13 @@ std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) con
   }
   const auto meets_opening = clear_ ? clear_->occluded(free) : std::vector<std::uint8_t>(free.size(), 0);
   for (std::size_t k = 0; k < free.size(); ++k)
-    found[index[k]] = meets_opening[k] != 0 ? through_openings(free[k]) : Passage{Spectrum::Ones(panes_.bands()), {}};
+    found[index[k]] = meets_opening[k] != 0 ? through_openings(free[k]) : Passage{Spectrum::Ones(optics_->bands()), {}};
   return found;
 }
 
 // Goes from opening to opening, each of which a straight line meets once at most. The limit stops endless loops.
 Passage LightPaths::through_openings(const Segment& segment) const {
-  Passage passage{Spectrum::Ones(panes_.bands()), {}};
+  Passage passage{Spectrum::Ones(optics_->bands()), {}};
   const Vector way = segment.to - segment.from;
   const double length = way.norm();
   double gone = 0;
@@ -89,7 +51,7 @@ Passage LightPaths::through_openings(const Segment& segment) const {
     const std::optional<Hit> hit = clear_->first_hits({&ray, 1}).front();
     if (!hit || gone + hit->distance >= length || hit->polygon == segment.to_polygon) break;
     gone += hit->distance;
-    passage.transmittance *= panes_.transmittance(hit->polygon, ray.direction);
+    passage.transmittance *= optics_->spectral_transmittance(hit->polygon, ray.direction);
     passage.crossings.push_back({hit->polygon, gone});
     ray.origin = hit->point;
     ray.from_polygon = hit->polygon;

@@ -3,51 +3,14 @@
 #include "patchlight/base/field.h"
 #include "patchlight/scene/scene.h"
 
-#include "light/pane.h"
 #include "visibility/occluder.h"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace patchlight {
-
-/// The fractions of light, per band, that clear polygons transmit straight, and that these and mirrors reflect
-/// specularly, by the material of the side that the light meets.
-class PaneSides {
- public:
-  explicit PaneSides(const Scene& scene);
-
-  Eigen::Index bands() const { return bands_; }
-
-  /// False when no light goes through a polygon from either side.
-  bool is_clear(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_clear; }
-
-  /// The transmittance of a clear polygon for the light seen in a unit direction.
-  Spectrum transmittance(PolygonIndex polygon, const Vector& direction) const;
-
-  /// False if a polygon has no specular reflection.
-  bool is_specular(PolygonIndex polygon) const { return !sides_.empty() && sides_[polygon].is_specular; }
-
-  /// The specular reflectance of an is_specular() polygon for the light seen in a unit direction, which meets the side.
-  Spectrum specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
-
- private:
-  struct Sides {
-    Vector normal = Vector::Zero();  // of the front
-    std::array<MaterialIndex, 2> materials{};
-    bool is_clear = false;
-    bool is_specular = false;
-  };
-  MaterialIndex material_met(const Sides& sides, const Vector& direction) const;
-
-  Eigen::Index bands_;
-  std::vector<std::vector<Pane>> panes_;  // per material and band; none of an opaque one
-  std::vector<Spectrum> mirrors_;         // per material: its specular reflectance; empty: none
-  std::vector<Sides> sides_;              // per polygon; none where none is clear or a mirror
-};
 
 /// A clear opening that a ray crosses.
 struct Crossing {
@@ -67,6 +30,9 @@ struct Passage {
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const Tracing& tracing);
+
+  /// The optics of the scene's clear faces and mirrors.
+  const std::shared_ptr<const SurfaceOptics>& optics() const { return optics_; }
 
   /// Per segment (row) and band (column).
   Field transmittance(std::span<const Segment> segments) const;
@@ -98,7 +64,7 @@ class LightPaths {
   Box bounds_;
   std::shared_ptr<const Occluder> opaque_;
   std::shared_ptr<const Occluder> clear_;  // null where there are no openings
-  PaneSides panes_;
+  std::shared_ptr<const SurfaceOptics> optics_;
 };
 
 }  // namespace patchlight

@@ -2,7 +2,7 @@
 
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
-#include "scene/specular_faces.h"
+#include "light/pane.h"
 
 #include <algorithm>
 #include <array>
@@ -39,14 +39,9 @@ constexpr int directions_of_source = 64;
 // The largest reflectance over the bands; for a clear material that of light from all directions alike.
 double reflectance_of(const Material& material) {
   if (material.specular_reflectance.size() > 0) return material.specular_reflectance.maxCoeff();
-  const std::vector<Pane> panes = panes_of(material);
   double most = 0;
-  for (const Pane& pane : panes) {
-    double reflected = 0;
-    for (std::size_t k = 0; k < cosine_steps; ++k)
-      reflected += irradiance_of_step(k) * specular_reflectance(pane, cosine_of_step(k));
-    most = std::max(most, reflected);
-  }
+  for (const Pane& pane : panes_of(material.index, material.transmittance))
+    most = std::max(most, hemispherical_reflectance(pane));
   return most;
 }
 

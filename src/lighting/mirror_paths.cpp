@@ -18,9 +18,9 @@ struct MirrorPaths::Way {
   std::vector<Point> places;
 };
 
-MirrorPaths::MirrorPaths(const Scene& scene, MirrorChains chains)
+MirrorPaths::MirrorPaths(const Scene& scene, std::shared_ptr<const SurfaceOptics> optics, MirrorChains chains)
     : chains_(std::move(chains)),
-      sides_(scene),
+      optics_(std::move(optics)),
       least_height_(tolerance_of_shapes * bounds(scene).diagonal().norm()),
       flat_(scene.polygons.size()),
       balls_(scene.polygons.size()) {
@@ -43,7 +43,7 @@ bool MirrorPaths::carries(const MirrorChain& chain, std::uint32_t source) const 
 }
 
 Spectrum MirrorPaths::unfollowed_irradiance(const Point& place, const Vector& normal) const {
-  Spectrum irradiance = Spectrum::Zero(sides_.bands());
+  Spectrum irradiance = Spectrum::Zero(optics_->bands());
   for (const auto& [corners, exitance] : chains_.unfollowed)
     irradiance += point_to_polygon(place, normal, corners) * exitance;
   return irradiance;
@@ -108,10 +108,10 @@ std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::s
 
 Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& paths,
                                  std::span<const Segment> segments) const {
-  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), sides_.bands());
+  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), optics_->bands());
   const std::vector<Way> found = ways(chain, segments);
   if (found.empty()) return share;
-  Field along = Field::Ones(static_cast<Eigen::Index>(found.size()), sides_.bands());
+  Field along = Field::Ones(static_cast<Eigen::Index>(found.size()), optics_->bands());
   for (std::size_t m = 0; m <= chain.mirrors.size(); ++m) {
     std::vector<Segment> parts;
     for (std::size_t w = 0; w < found.size(); ++w) {
@@ -124,7 +124,7 @@ Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& pat
       parts.push_back(part);
       if (is_last) continue;
       const Vector direction = (part.to - part.from).normalized();
-      along.row(static_cast<Eigen::Index>(w)) *= sides_.specular_reflectance(chain.mirrors[m].polygon, direction);
+      along.row(static_cast<Eigen::Index>(w)) *= optics_->spectral_reflectance(chain.mirrors[m].polygon, direction);
     }
     along *= paths.transmittance(parts);
   }
@@ -133,17 +133,16 @@ Field MirrorPaths::transmittance(const MirrorChain& chain, const LightPaths& pat
   return share;
 }
 
-MirrorView::MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing)
-    : sides_(sides), occluder_(tracing.all_faces()) {
+SpecularAim::SpecularAim(const Scene& scene, const SurfaceOptics& optics) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    if (sides.is_specular(p)) targets_.push_back(opening_at(scene, p));
+    if (optics.at(p)) targets_.push_back(opening_at(scene, p));
   std::stable_sort(targets_.begin(), targets_.end(),
                    [](const Opening& a, const Opening& b) { return a.area > b.area; });
   targets_.resize(std::min<std::size_t>(targets_.size(), 256));  // rays over the hemisphere find smaller ones
 }
 
 // The probability of each target to be chosen; none where no target is before the receiver.
-std::vector<double> MirrorView::probabilities_from(const SurfacePoint& at) const {
+std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) const {
   std::vector<double> probabilities;
   double sum = 0;
   for (const Opening& target : targets_) {
@@ -157,7 +156,7 @@ std::vector<double> MirrorView::probabilities_from(const SurfacePoint& at) const
 }
 
 // 1/sr
-double MirrorView::aimed_density(std::span<const double> probabilities, const SurfacePoint& at,
+double SpecularAim::aimed_density(std::span<const double> probabilities, const SurfacePoint& at,
                                  const Vector& direction) const {
   double density = 0;
   for (std::size_t k = 0; k < probabilities.size(); ++k) {
@@ -168,37 +167,17 @@ double MirrorView::aimed_density(std::span<const double> probabilities, const Su
   return density;
 }
 
-// Straight on, through at most 64 clear faces.
-void MirrorView::follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const {
-  for (int crossing = 0; crossing < 64; ++crossing) {
-    const std::optional<Hit> hit = occluder_.first_hits({&ray, 1}).front();
-    if (!hit || !sides_.is_specular(hit->polygon)) return;
-    const Spectrum reflected = sides_.specular_reflectance(hit->polygon, hit->direction);
-    if ((reflected > 0).any())
-      into.push_back(
-          {{hit->point, occluder_.mirrored(hit->polygon, hit->direction), hit->polygon}, weight * reflected});
-    if (!sides_.is_clear(hit->polygon)) return;
-    weight *= sides_.transmittance(hit->polygon, hit->direction);
-    ray = {hit->point, hit->direction, hit->polygon};
-  }
-}
-
-std::vector<MirrorRay> MirrorView::further(std::span<const MirrorRay> rays, double whole) const {
-  std::vector<MirrorRay> met;
-  for (const auto& [ray, weight] : rays) follow(ray, weight, met);
-  std::erase_if(met, [&](const MirrorRay& one) { return one.weight.maxCoeff() < least_reflectance * whole; });
-  return met;
-}
-
-void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
-                          std::vector<MirrorRay>& into) const {
+std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at,
+                                           std::span<const std::array<double, 2>> samples) const {
   const std::vector<double> probabilities = probabilities_from(at);
-  if (probabilities.empty()) return;
-  const std::size_t half = samples.size() / 2;
-  for (std::size_t k = 0; k < 2 * half; ++k) {
-    const auto& [u, v, s, t] = samples[k];
+  const std::size_t aimed = probabilities.empty() ? 0 : samples.size() / 2;
+  const std::size_t diffuse = samples.size() - aimed;
+  std::vector<WeightedRay> rays;
+  rays.reserve(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto& [s, t] = samples[k];
     Vector direction;
-    if (k < half) {
+    if (k < diffuse) {
       direction = cosine_direction(at.normal, s, t);
     } else {
       const Choice chosen = choose(probabilities, s);
@@ -206,10 +185,11 @@ void MirrorView::add_rays(const SurfacePoint& at, std::span<const std::array<dou
     }
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) continue;
-    const double density = cosine / std::numbers::pi + aimed_density(probabilities, at, direction);
-    const double weight = cosine / (static_cast<double>(half) * density);
-    follow({at.point, direction, at.polygon}, Spectrum::Constant(sides_.bands(), weight), into);
+    const double density = static_cast<double>(diffuse) * cosine / std::numbers::pi +
+                           static_cast<double>(aimed) * aimed_density(probabilities, at, direction);
+    rays.push_back({{at.point, direction, at.polygon}, cosine / density});
   }
+  return rays;
 }
 
 }  // namespace patchlight

@@ -8,8 +8,8 @@
 #include "visibility/flat_polygon.h"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +19,7 @@ namespace patchlight {
 /// transmittances of LightPaths between them.
 class MirrorPaths {
  public:
-  MirrorPaths(const Scene& scene, MirrorChains chains);
+  MirrorPaths(const Scene& scene, std::shared_ptr<const SurfaceOptics> optics, MirrorChains chains);
 
   const MirrorChains& found() const { return chains_; }
   const std::vector<MirrorChain>& chains() const { return chains_.chains; }
@@ -39,50 +39,41 @@ class MirrorPaths {
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Ball& source) const;
   bool may_pass(const MirrorChain& chain, const Ball& receiver, const Vector& toward_source) const;
 
-  const PaneSides& sides() const { return sides_; }
-
  private:
   struct Way;
   std::vector<Way> ways(const MirrorChain& chain, std::span<const Segment> segments) const;
 
   MirrorChains chains_;
-  PaneSides sides_;
+  std::shared_ptr<const SurfaceOptics> optics_;
   double least_height_;            // meters
   std::vector<FlatPolygon> flat_;  // per polygon; empty where it is no mirror
   std::vector<Ball> balls_;        // around each of these
 };
 
-/// A ray from a mirror along which a place sees light, and the irradiance of the place by a radiance of 1 in the ray,
-/// per band.
-struct MirrorRay {
+/// A ray from a place.
+struct WeightedRay {
   Ray ray;
-  Spectrum weight;
+  double weight = 0;  ///< the share of the place's irradiance by a radiance of 1 along this ray, sr
 };
 
-/// Samples the light that places see in mirrors and in clear faces.
-class MirrorView {
+/// Samples the directions in which places may see clear faces and mirrors.
+class SpecularAim {
  public:
-  /// Keeps references to `sides` and to the tracing's occluder of all faces.
-  MirrorView(const Scene& scene, const PaneSides& sides, const Tracing& tracing);
+  SpecularAim(const Scene& scene, const SurfaceOptics& optics);
 
-  /// Half of the samples represent directions distributed as the cosine over the hemisphere, the others points on the
-  /// mirrors before the receiver. The balance heuristic combines both (Veach and Guibas 1995). Each direction has a ray
-  /// for every mirror and clear face on it, up to the first opaque face.
-  void add_rays(const SurfacePoint& at, std::span<const std::array<double, 4>> samples,
-                std::vector<MirrorRay>& into) const;
+  /// True if a clear face or a mirror is before a place.
+  bool is_before(const SurfacePoint& at) const { return !probabilities_from(at).empty(); }
 
-  /// The rays that leave mirrors which these meet on their way, straight on or through clear faces; without
-  /// those whose weight relative to `whole` is below least_reflectance.
-  std::vector<MirrorRay> further(std::span<const MirrorRay> rays, double whole) const;
+  /// Half of the samples, two numbers each, become directions distributed as the cosine over the hemisphere. The others
+  /// become points on the clear faces and mirrors before the place. The balance heuristic combines both (Veach and
+  /// Guibas 1995). All are distributed as the cosine where no such face is before the place.
+  std::vector<WeightedRay> rays(const SurfacePoint& at, std::span<const std::array<double, 2>> samples) const;
 
  private:
   std::vector<double> probabilities_from(const SurfacePoint& at) const;
   double aimed_density(std::span<const double> probabilities, const SurfacePoint& at, const Vector& direction) const;
-  void follow(Ray ray, Spectrum weight, std::vector<MirrorRay>& into) const;
 
-  const PaneSides& sides_;
-  const Occluder& occluder_;
-  std::vector<Opening> targets_;  // the largest mirrors and clear faces
+  std::vector<Opening> targets_;  // the largest of these faces
 };
 
 }  // namespace patchlight

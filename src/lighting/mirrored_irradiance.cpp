@@ -5,6 +5,7 @@
 #include "base/streams.h"
 #include "lighting/receiver.h"
 #include "mesh/nested_mesh.h"
+#include "visibility/walk.h"
 
 #include <algorithm>
 #include <array>
@@ -75,8 +76,7 @@ struct MirrorSampler {
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
   OverChains over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const;
-  Spectrum sky_in(std::span<const MirrorRay> rays) const;
-  Spectrum of_sky(std::span<const SampledPlace> places, bool is_point) const;
+  Spectrum of_sky(std::span<const SampledPlace> places, bool is_point, std::uint32_t key) const;
   std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort) const;
   OverChains replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                            std::span<const WantedChain> among) const;
@@ -144,40 +144,32 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
   return sums;
 }
 
-// Light of the sky in rays that leave mirrors.
-Spectrum MirrorSampler::sky_in(std::span<const MirrorRay> rays) const {
-  std::vector<Segment> segments;
-  for (const auto& [ray, weight] : rays)
-    segments.push_back({ray.origin, lighting.paths.beyond(ray.origin, ray.direction), ray.from_polygon, no_polygon});
-  const Field share = lighting.paths.transmittance(segments);
+// The sum over places of one replicate: sky that paths see after one or more reflections. A point is one place, with
+// all of the samples.
+Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_point, std::uint32_t key) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
-  for (std::size_t k = 0; k < rays.size(); ++k)
-    sum += rays[k].weight * radiance(*lighting.sky, rays[k].ray.direction) * share.row(static_cast<Eigen::Index>(k));
-  return sum;
-}
-
-// The sum over places of one replicate. A point is one place, with all of the samples.
-Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_point) const {
-  Spectrum sum = Spectrum::Zero(lighting.bands);
-  if (!lighting.sky) return sum;
-  const MirrorView& view = lighting.mirrors->view;
-  std::vector<MirrorRay> rays;
-  if (is_point) {
-    std::vector<std::array<double, 4>> samples;
-    for (const SampledPlace& place : places) samples.push_back(place.sample);
-    view.add_rays(places[0].at, samples, rays);
-    for (MirrorRay& ray : rays) ray.weight *= static_cast<double>(places.size());
-  } else {
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const std::array<std::array<double, 4>, 2> pair{places[k].sample, places[(k + 1) % places.size()].sample};
-      view.add_rays(places[k].at, pair, rays);
+  const auto& [paths, aim, occluder] = *lighting.mirrors;
+  if (!lighting.sky || !aim.is_before(places[0].at)) return sum;
+  const std::size_t each = is_point ? places.size() : 2;
+  std::vector<Ray> rays;
+  std::vector<double> weights;
+  for (std::size_t k = 0; k < (is_point ? 1 : places.size()); ++k) {
+    std::vector<std::array<double, 2>> samples;
+    for (std::size_t n = 0; n < each; ++n) {
+      const std::array<double, 4>& sample = places[(k + n) % places.size()].sample;
+      samples.push_back({sample[2], sample[3]});
+    }
+    for (const auto& [ray, weight] : aim.rays(places[k].at, samples)) {
+      rays.push_back(ray);
+      weights.push_back(weight);
     }
   }
-  for (std::size_t mirrors = 1; mirrors <= most_mirrors && !rays.empty(); ++mirrors) {
-    sum += sky_in(rays);
-    rays = view.further(rays, is_point ? 1 : std::numbers::pi);
-  }
-  return sum;
+  walk(occluder, *lighting.paths.optics(), std::move(rays), {.seed = key}, [&](const SpecularPath& path, const std::optional<Hit>& hit) {
+    if (!hit && path.reflections > 0)
+      sum += weights[path.start] * path.throughput * radiance(*lighting.sky, path.ray.direction);
+    return Continuation::specular;
+  });
+  return (is_point ? static_cast<double>(places.size()) : 1.0) * sum;
 }
 
 // Those over which no other polygon lies; replicates without such a place are left out of the numbers.
@@ -208,7 +200,7 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
-    found.light.row(first->replicate) += of_sky({first, last}, receiver.is_point());
+    found.light.row(first->replicate) += of_sky({first, last}, receiver.is_point(), hash({key, static_cast<std::uint64_t>(first->replicate)}));
     for (Field* const field : {&found.light, &found.beyond})
       field->row(first->replicate) /= static_cast<double>(last - first);
     first = last;
@@ -292,8 +284,9 @@ std::vector<LampFace> ranked_faces(const Scene& scene) {
 }  // namespace
 
 Mirrors::Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting)
-    : paths(scene, mirror_chains(scene, mirrored_sources(lighting, ranked_faces(scene)))),
-      view(scene, paths.sides(), tracing) {}
+    : paths(scene, lighting.paths.optics(), mirror_chains(scene, mirrored_sources(lighting, ranked_faces(scene)))),
+      aim(scene, *lighting.paths.optics()),
+      occluder(tracing.all_faces()) {}
 
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options, const Observer& observer) {

@@ -14,11 +14,11 @@ namespace patchlight {
 /// The paths of light from lamps, luminaires, sun and sky via the mirrors and clear faces of a scene.
 struct Mirrors {
   MirrorPaths paths;
-  MirrorView view;
+  SpecularAim aim;
+  const Occluder& occluder;  ///< of all faces
 
   /// Chains of the lighting's luminaires and sun, and of the strongest emitting polygons.
   Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting);
-  Mirrors(const Mirrors&) = delete;  // the view refers to the paths
 };
 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors

@@ -301,11 +301,11 @@ std::optional<Spectrum> lit_area(const PlanarOutline& region, const std::vector<
   return lit;
 }
 
-Shades::Shades(const Scene& scene, const Coverings& coverings)
+Shades::Shades(const Scene& scene, const Coverings& coverings, std::shared_ptr<const SurfaceOptics> optics)
     : tolerance_(tolerance_of_shapes * extent_of(scene)),
       bands_(number_of_bands(scene)),
       coverings_(coverings),
-      panes_(scene) {
+      optics_(std::move(optics)) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     first_triangle_.push_back(triangles_.size());
     const std::vector<Point> points = corner_points(scene, p);
@@ -374,11 +374,11 @@ struct Shades::Shadows {
   std::vector<Spectrum> shares = {};
 
   // Sets the transmittances of panes towards the light from a place.
-  void let_through(const PaneSides& panes, const Point& place, const LightPlace& light) {
+  void let_through(const SurfaceOptics& optics, const Point& place, const LightPlace& light) {
     const Vector direction = light.way_from(place).normalized();
     shares.resize(of_panes.size());
     for (std::size_t k = 0; k < of_panes.size(); ++k) {
-      shares[k] = panes.transmittance(of_panes[k].polygon, direction);
+      shares[k] = optics.spectral_transmittance(of_panes[k].polygon, direction);
       all[of_panes[k].shade].transmittance = &shares[k];
     }
   }
@@ -417,7 +417,7 @@ std::optional<Shades::Shadows> Shades::shadows_on(const Receiver& patch, const L
       point -= frame.height(point) / frame.normal.dot(along) * along;
     }
     shadows.all.push_back({outline_of(shadow, frame), nullptr});
-    if (panes_.is_clear(triangle.polygon)) {
+    if (optics_->is_clear(triangle.polygon)) {
       shadows.of_panes.push_back({shadows.all.size() - 1, triangle.polygon});
     } else if (holds(shadows.all.back().outline, frame.corners)) {
       shadows.all = {shadows.all.back()};
@@ -435,7 +435,7 @@ std::optional<Spectrum> Shades::transmittance(const Receiver& patch, const Light
   if (!(middle.normal.dot(way) > tolerance_of_shapes * way.norm())) return Spectrum(Spectrum::Zero(bands_));
   auto shadows = shadows_on(patch, light);
   if (!shadows) return std::nullopt;
-  shadows->let_through(panes_, middle.point, light);
+  shadows->let_through(*optics_, middle.point, light);
   const auto exposed = lit_area(shadows->frame.corners, shadows->covers, 1);
   const auto lit = lit_area(shadows->frame.corners, shadows->all, bands_);
   if (!exposed || !lit) return std::nullopt;
@@ -451,7 +451,7 @@ std::optional<LitPart> Shades::lit_part(Shadows& shadows, const std::array<Point
   const PlanarOutline region = outline_of(corners, shadows.frame);
   const auto exposed = lit_area(region, shadows.covers, 1);
   const auto lit_as_from = [&](const Point& place) {
-    shadows.let_through(panes_, place, light);
+    shadows.let_through(*optics_, place, light);
     return lit_area(region, shadows.all, bands_);
   };
   const auto middle = lit_as_from((corners[0] + corners[1] + corners[2] + corners[3]) / 4);

@@ -4,6 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "lighting/receiver.h"
+#include "optics/surface_optics.h"
 #include "scene/coverings.h"
 #include "scene/light_place.h"
 #include "visibility/shaft.h"
@@ -11,6 +12,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -48,7 +50,7 @@ struct LitPart {
 /// light that gets through it is found. Immutable and safe to use from several threads.
 class Shades {
  public:
-  explicit Shades(const Scene& scene, const Coverings& coverings = {});
+  Shades(const Scene& scene, const Coverings& coverings, std::shared_ptr<const SurfaceOptics> optics);
 
   /// Mean transmittance per band, over the exposed part of a patch, of the ways from a light before it: exact up to
   /// rounding, but that panes count with the transmittance towards one place of the patch. Nothing where the shadows of
@@ -82,7 +84,7 @@ class Shades {
   double tolerance_ = 0;  // of heights, m
   Eigen::Index bands_ = 0;
   Coverings coverings_;
-  PaneSides panes_;
+  std::shared_ptr<const SurfaceOptics> optics_;
   std::vector<Triangle> triangles_;          // polygon by polygon
   std::vector<std::size_t> first_triangle_;  // of each polygon; and the number of all
   std::vector<Node> nodes_;

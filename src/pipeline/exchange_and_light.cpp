@@ -100,7 +100,7 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
   const std::vector<PatchRange> lamps = new_lamps(run, mesh, problem, known);
   known.lamps.insert(known.lamps.end(), lamps.begin(), lamps.end());
   LampFactors& factors = known.lamp_factors;
-  if (run.world->tracing().has_specular_faces() || !known.specular_kinds.empty()) {
+  if (run.world->tracing().has_specular_surfaces() || !known.specular_kinds.empty()) {
     factors = factors_of_lamps(known.lamps, run, plan, mesh);
   } else if (!lamps.empty()) {
     const LampFactors more = factors_of_lamps(lamps, run, plan, mesh);
@@ -201,7 +201,7 @@ std::optional<PolygonIndex> other_kind(const std::vector<std::array<double, 2>>&
 
 // Colors may differ, but the same polygons have to be specular as when the rays were traced.
 void require_same_kinds(const RayExchange& known, const Run& run) {
-  const auto now = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
+  const auto now = run.world->between_patches().optics().kinds(run.scene.polygons.size());
   const bool is_as_long = known.specular_kinds.empty() || known.specular_kinds.size() == now.size();
   const std::optional<PolygonIndex> other = is_as_long ? other_kind(known.specular_kinds, now) : 0;
   if (!other) return;
@@ -220,7 +220,7 @@ Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
 
 std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
                                   const Tracing& tracing) {
-  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_faces();
+  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_surfaces();
   std::vector<LampSide> apart;
   std::size_t pieces = 0;
   for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
@@ -261,8 +261,8 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   light.in_mirrors = lamps_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light, known);
-    if (run.world->tracing().has_specular_faces())
-      exchange.specular_kinds = run.world->between_patches().specular_faces().kinds(run.scene.polygons.size());
+    if (run.world->tracing().has_specular_surfaces())
+      exchange.specular_kinds = run.world->between_patches().optics().kinds(run.scene.polygons.size());
     return {std::move(exchange), std::move(light)};
   }
   require_same_kinds(exchange, run);

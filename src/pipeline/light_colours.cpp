@@ -194,7 +194,7 @@ Plan in_bands(Plan plan, const std::vector<Eigen::Index>& bands) {
 }  // namespace
 
 std::vector<LightColour> light_colours(const Run& run) {
-  if (run.plan.assembly.storage != Storage::rays || !run.world->tracing().has_specular_faces()) return {};
+  if (run.plan.assembly.storage != Storage::rays || !run.world->tracing().has_specular_surfaces()) return {};
   const Reflections reflections = run.world->tracing().reflections();
   const auto groups = alike_bands(specular_spectra(run.scene, reflections), number_of_bands(run.scene));
   if (groups.size() < 2) return {};

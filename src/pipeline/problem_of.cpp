@@ -27,7 +27,7 @@ std::vector<std::vector<PatchIndex>> textured_patches(const Scene& scene, const 
 // From areas a to areas a / f, with B, E and rho times f: the same flux. f is the share of light from all directions
 // alike that a patch holds, or its inverse.
 Simulation of_other_parts(Simulation simulation, const Scene& scene, bool whole) {
-  const SpecularFaces specular(scene, reflections_of(simulation.plan));
+  const SurfaceOptics specular(scene, reflections_of(simulation.plan));
   const PatchMesh& mesh = simulation.mesh;
   RadiosityProblem& problem = simulation.problem;
   Solution& solution = simulation.solution;
@@ -111,7 +111,7 @@ Field with_textures(Field reflectance, const Scene& scene, const PatchMesh& mesh
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back, Reflections reflections) {
   const Eigen::Index bands = number_of_bands(scene);
-  const SpecularFaces specular(scene, reflections);
+  const SurfaceOptics specular(scene, reflections);
   RadiosityProblem problem{{Field(mesh.size(), bands)}, Field::Zero(mesh.size(), bands), exposed_area};
   for (PatchIndex i = 0; i < mesh.size(); ++i)
     problem.scattering.reflectance.row(i) = scene.materials[mesh.material[i]].reflectance;

@@ -9,7 +9,7 @@
 
 #include "lighting/direct_irradiance.h"
 #include "pipeline/run.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include <cstdint>
 #include <span>
@@ -22,7 +22,7 @@ Field with_textures(Field reflectance, const Scene& scene, const PatchMesh& mesh
 
 /// The radiosity problem of a mesh from the scene's materials. Lamps emit from their front sides, and from their back
 /// sides if `emit_from_back`. A back side with its own material counts as a front side. A clear patch or a mirror
-/// counts as a sheet with holes: the share SpecularFaces::held() reflects and emits everything, and `exposed_area` is
+/// counts as a sheet with holes: the share SurfaceOptics::held() reflects and emits everything, and `exposed_area` is
 /// the area of this share. docs/theory/panes-mirrors-sheets.md. For translucent sheets see with_sheets().
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back, Reflections reflections = Reflections::kept);

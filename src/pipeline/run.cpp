@@ -12,7 +12,7 @@ namespace {
 // Warns if a noticeable share of the light on mirrors takes chains that are not followed.
 Diagnostics notes_on_chains(const World& world) {
   const Tracing& tracing = world.tracing();
-  if (tracing.reflections() == Reflections::kept || !tracing.has_specular_faces()) return {};
+  if (tracing.reflections() == Reflections::kept || !tracing.has_specular_surfaces()) return {};
   const MirrorChains& found = world.lighting().mirrors->paths.found();
   if (found.unfollowed_share < 0.01) return {};
   std::ostringstream text;

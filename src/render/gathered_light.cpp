@@ -238,7 +238,7 @@ Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point&
 }
 
 bool is_plain(const SolvedLight& light, PatchIndex patch) {
-  return light.occluder.specular_faces().at(light.mesh.polygon[patch]) == nullptr;
+  return light.occluder.optics().at(light.mesh.polygon[patch]) == nullptr;
 }
 
 std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
@@ -291,7 +291,7 @@ std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>&
     stop.point = hit.point;
     stop.patch = lookup_.patch_at(hit.polygon, hit.side, hit.point);
     stop.held = occluder.held_share(hit.polygon, hit.side);
-    stop.is_specular = hit.reflections > 0 || occluder.specular_faces().at(hit.polygon) != nullptr;
+    stop.is_specular = hit.reflections > 0 || occluder.optics().at(hit.polygon) != nullptr;
   }
   return stops;
 }

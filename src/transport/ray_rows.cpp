@@ -14,13 +14,13 @@ namespace patchlight {
 namespace {
 
 // With which probability a ray was mirrored; where no ray is now, nothing goes on whatever it was.
-double mirrored_rays(const SpecularFaces& faces, const SpecularStop& stop) {
-  const SpecularFace* const face = faces.at(stop.polygon);
+double mirrored_rays(const SurfaceOptics& faces, const SpecularStop& stop) {
+  const SpecularSurface* const face = faces.at(stop.polygon);
   return face ? face->mirrored_rays(stop.side(), stop.cosine()) : 1;
 }
 
 // The share of light left after a stop, over the probability that the ray went this way.
-double onward_share(const SpecularShares& shares, const SpecularFaces& faces, const SpecularStop& stop) {
+double onward_share(const SpecularShares& shares, const SurfaceOptics& faces, const SpecularStop& stop) {
   if (stop.step() == RayStep::crossed) return shares.transmitted;
   if (stop.step() == RayStep::sent) return shares.relative_held;
   const bool is_mirrored = stop.step() == RayStep::mirrored;
@@ -297,7 +297,7 @@ struct MeasureBy {
 // All rays of clear patches have stops; the light that these let through has their color.
 LostShare without_clear(LostShare lost, const PatchMesh& mesh, const Occluder& occluder) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const SpecularFace* const face = occluder.specular_faces().at(mesh.polygon[i]);
+    const SpecularSurface* const face = occluder.optics().at(mesh.polygon[i]);
     if (face && face->is_clear()) lost.escaped[i] = lost.at_backs[i] = 0;
   }
   lost.clear = {};
@@ -309,7 +309,7 @@ LostShare with_backs(LostShare lost, const std::vector<std::uint32_t>& sees_back
   std::vector<PatchIndex> place(sees_backs.size());
   for (std::size_t i = 0; i < place.size(); ++i) place[i] = sees_backs[i] != 0 ? no_patch : static_cast<PatchIndex>(i);
   lost.rays_per_patch = by.options.lost_share_rays;
-  const bool is_specular = !by.occluder.specular_faces().empty();
+  const bool is_specular = !by.occluder.optics().empty();
   return measure_lost_share(by.mesh, by.occluder, KnownShares{lost, place, is_specular, true, by.options.doublings},
                             by.options.seed, by.observer);
 }
@@ -322,7 +322,7 @@ void SpecularStop::set(RayStep step, Side on, double of_angle) {
       static_cast<std::uint32_t>(step) | static_cast<std::uint32_t>(on) << 3U | static_cast<std::uint32_t>(steps) << 4U;
 }
 
-void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces& faces,
+void tell_form_factors(std::span<const SpecularStop> stops, const SurfaceOptics& faces,
                        const std::function<void(const SpecularStop& stop, double form_factor)>& tell) {
   double left = 1;
   for (const SpecularStop& stop : stops) {
@@ -368,7 +368,7 @@ struct WeighedRow {
   double at_backs = 0;  // and to sides without patches
 };
 
-WeighedRow weighed_row(const RayRows& rows, std::size_t i, const SpecularFaces& faces) {
+WeighedRow weighed_row(const RayRows& rows, std::size_t i, const SurfaceOptics& faces) {
   WeighedRow row;
   tell_form_factors(rows.stops_of(i), faces, [&row](const SpecularStop& stop, double form_factor) {
     if (stop.patch == SpecularStop::in_the_open) {
@@ -438,7 +438,7 @@ void scale(RayRows& rows, const Eigen::VectorXd& wanted) {
 
 TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& occluder) {
   if (rows.halves[0].first_stop.empty()) return rows;
-  const SpecularFaces& faces = occluder.specular_faces();
+  const SurfaceOptics& faces = occluder.optics();
   std::array<std::vector<WeighedRow>, 2> weighed;
   for (std::size_t half = 0; half < 2; ++half) {
     weighed[half].resize(mesh.size());
@@ -446,7 +446,7 @@ TracedRows weighed_rows(TracedRows rows, const PatchMesh& mesh, const Occluder& 
     rows.halves[half] = with_entries(std::move(rows.halves[half]), weighed[half]);
   }
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const SpecularFace* const face = faces.at(mesh.polygon[i]);
+    const SpecularSurface* const face = faces.at(mesh.polygon[i]);
     add_lost(rows.lost, i, weighed, face && face->is_clear());
   }
   rows.lost.clear = clear_shares(mesh, occluder);

@@ -5,7 +5,7 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/lost_share.h"
 
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include <Eigen/Core>
 #include <array>
@@ -32,7 +32,7 @@ struct RowBlocks {
 enum class RayStep : std::uint8_t {
   sent,      ///< the ray starts from a clear polygon
   crossed,   ///< a shadow ray passes straight through a clear polygon
-  through,   ///< a hemisphere ray passes straight through, as drawn by SpecularFace::mirrored_rays()
+  through,   ///< a hemisphere ray passes straight through, as drawn by SpecularSurface::mirrored_rays()
   mirrored,  ///< a hemisphere ray continues as from a mirror
   kept,      ///< the ray ends on a specular polygon, with the share that this holds
   ends       ///< the ray ends, with the full remaining share
@@ -59,7 +59,7 @@ struct SpecularStop {
 
 /// Computes the form factors of rays for one color and calls `tell`(stop, form factor) at every stop; 0 where nothing
 /// is held.
-void tell_form_factors(std::span<const SpecularStop> stops, const SpecularFaces& faces,
+void tell_form_factors(std::span<const SpecularStop> stops, const SurfaceOptics& faces,
                        const std::function<void(const SpecularStop& stop, double form_factor)>& tell);
 
 class BrightPatches;

@@ -143,7 +143,7 @@ SpecularMeeting meeting_of(const SpecularStop& stop, const Scene& scene) {
 
 bool goes_on(RayStep step) { return step == RayStep::through || step == RayStep::mirrored || step == RayStep::crossed; }
 
-std::vector<ClassEntry> entries_by_class(const RayRows& rows, const Scene& scene, const SpecularFaces& faces,
+std::vector<ClassEntry> entries_by_class(const RayRows& rows, const Scene& scene, const SurfaceOptics& faces,
                                          NumberedClasses& numbered) {
   std::vector<ClassEntry> entries;
   for (PatchIndex i = 0; i + 1 < rows.first_stop.size(); ++i) {
@@ -169,7 +169,7 @@ std::string name_of(const WayClass& way_class, const Scene& scene) {
   return name.empty() ? "straight" : name;
 }
 
-RowsByClass rows_by_class(const TracedRows& rows, const Scene& scene, const SpecularFaces& faces) {
+RowsByClass rows_by_class(const TracedRows& rows, const Scene& scene, const SurfaceOptics& faces) {
   NumberedClasses numbered;
   RowsByClass found;
   for (std::size_t half = 0; half < 2; ++half)

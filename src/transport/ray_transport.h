@@ -23,7 +23,7 @@ struct RayExchange {
   TracedRows rows;
   std::vector<PatchRange> lamps;  ///< separate lamps: the patches of one side each, with equal emission
   LampFactors lamp_factors;       ///< per patch and lamp
-  /// SpecularFaces::kinds() of the polygons at the time of tracing; empty if none is specular.
+  /// SurfaceOptics::kinds() of the polygons at the time of tracing; empty if none is specular.
   std::vector<std::array<double, 2>> specular_kinds = {};
 };
 
@@ -82,6 +82,6 @@ struct RowsByClass {
 };
 
 /// Splits rows with stops into classes, in the color of `faces`. No ray is traced.
-RowsByClass rows_by_class(const TracedRows& rows, const Scene& scene, const SpecularFaces& faces);
+RowsByClass rows_by_class(const TracedRows& rows, const Scene& scene, const SurfaceOptics& faces);
 
 }  // namespace patchlight

@@ -3,7 +3,7 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "form_factor/patch_shape.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include <algorithm>
 #include <cassert>
@@ -301,8 +301,8 @@ PatchRays RowTracer::trace(PatchIndex patch, RowEntries& entries) const {
 
 namespace {
 
-bool is_specular_side(const SpecularFaces& faces, PolygonIndex polygon, Side side) {
-  const SpecularFace* const face = faces.at(polygon);
+bool is_specular_side(const SurfaceOptics& faces, PolygonIndex polygon, Side side) {
+  const SpecularSurface* const face = faces.at(polygon);
   return face && face->is_specular(side);
 }
 
@@ -310,13 +310,13 @@ bool is_specular_side(const SpecularFaces& faces, PolygonIndex polygon, Side sid
 
 // Every ray of a clear patch counts by the share that the patch holds at its angle.
 bool RowTracer::starts_clear(PatchIndex patch) const {
-  const SpecularFace* const face = occluder_.specular_faces().at(mesh_.polygon[patch]);
+  const SpecularSurface* const face = occluder_.optics().at(mesh_.polygon[patch]);
   return face && face->is_clear();
 }
 
 // A stop of a ray over the hemisphere on its way.
 SpecularStop RowTracer::stop_at(PatchIndex patch, const Ray& ray, const WayStop& at) const {
-  const SpecularFaces& faces = occluder_.specular_faces();
+  const SurfaceOptics& faces = occluder_.optics();
   const Hit& hit = at.hit;
   SpecularStop stop;
   stop.patch = SpecularStop::at_back;
@@ -384,7 +384,7 @@ PatchRays RowTracer::trace_specular(PatchIndex patch, RowEntries& entries) const
 std::vector<SpecularStop> RowTracer::crossing_stops(const ShadowPacket& packet, std::size_t lane, PatchIndex patch,
                                                     const RayEntry& entry,
                                                     std::span<const PolygonIndex> crossed) const {
-  const SpecularFaces& faces = occluder_.specular_faces();
+  const SurfaceOptics& faces = occluder_.optics();
   const Vector direction = Vector(packet.toward_x[lane], packet.toward_y[lane], packet.toward_z[lane]).normalized();
   std::vector<SpecularStop> stops;
   const auto add = [&](RayStep step, PolygonIndex polygon, Side side) {
@@ -407,7 +407,7 @@ std::vector<SpecularStop> RowTracer::crossing_stops(const ShadowPacket& packet, 
 // Those of a packet that no opaque polygon blocks.
 void RowTracer::add_arriving(const ShadowPacket& packet, PatchIndex patch, std::span<const RayEntry> entries,
                              std::size_t half, RowEntries& into) const {
-  const SpecularFaces& faces = occluder_.specular_faces();
+  const SurfaceOptics& faces = occluder_.optics();
   const auto crossings = occluder_.crossings(packet);
   for (std::size_t lane = 0; lane < ShadowPacket::size; ++lane) {
     const RayEntry& entry = entries[lane];

@@ -81,7 +81,7 @@ class RowTracer {
   RowTracer(const PatchMesh& mesh, const Occluder& occluder, const BrightPatches& bright, const RayOptions& options);
 
   /// Whether rays can have specular paths.
-  bool is_specular() const { return !occluder_.specular_faces().empty(); }
+  bool is_specular() const { return !occluder_.optics().empty(); }
 
   /// The number of polygons in the scene.
   PolygonIndex polygons() const { return static_cast<PolygonIndex>(mesh_.first_patch.size() / 2); }

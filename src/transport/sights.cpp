@@ -1,7 +1,7 @@
 #include "transport/sights.h"
 
 #include "base/sampling.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,15 +21,15 @@ Eigen::Matrix3d patch_frame(const PatchMesh& mesh, PatchIndex patch) {
 namespace {
 
 // How a ray goes on at a stop that is not its last by number.
-Onward onward_at(const SpecularFaces& faces, const Hit& hit, double drawn) {
-  const SpecularFace* const face = faces.at(hit.polygon);
+Onward onward_at(const SurfaceOptics& faces, const Hit& hit, double drawn) {
+  const SpecularSurface* const face = faces.at(hit.polygon);
   if (!face || !face->is_specular(hit.side)) return Onward::ends;
   const double cosine = cosine_between(faces.normal(hit.polygon), hit.direction);
   return drawn < face->mirrored_rays(hit.side, cosine) ? Onward::mirrored : Onward::through;
 }
 
 Way way_from(const Occluder& occluder, const std::optional<Hit>& first, std::uint64_t seed, std::size_t key) {
-  const SpecularFaces& faces = occluder.specular_faces();
+  const SurfaceOptics& faces = occluder.optics();
   Way way;
   std::optional<Hit> hit = first;
   for (std::uint64_t meeting = 0; hit; ++meeting) {

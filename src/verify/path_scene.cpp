@@ -22,7 +22,7 @@ struct Panes {
 Panes panes_of_materials(const Scene& scene, Reflections reflections) {
   Panes all;
   for (const Material& material : scene.materials) {
-    all.panes.push_back(panes_of(material));
+    all.panes.push_back(panes_of(material.index, material.transmittance));
     all.held.push_back(hemispherical_held(all.panes.back(), reflections == Reflections::followed));
   }
   return all;

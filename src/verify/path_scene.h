@@ -7,7 +7,7 @@
 
 #include "base/sampling.h"
 #include "light/pane.h"
-#include "scene/specular_faces.h"
+#include "light/pane.h"
 #include "visibility/occluder.h"
 
 #include <cstddef>

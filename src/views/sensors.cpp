@@ -2,7 +2,6 @@
 #include "patchlight/views/views.h"
 
 #include "gather/doubtful_sensors.h"
-#include "gather/mirrored_gather.h"
 #include "gather/sensor_places.h"
 #include "lighting/light_paths.h"
 #include "lighting/mirrored_irradiance.h"
@@ -54,27 +53,10 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
   return all;
 }
 
-// The paths of each band's light, where clear faces are colored.
-std::optional<LightPaths> coloured_paths(const Scene& scene, const Tracing& tracing) {
-  const auto is_coloured = [](const Material& material) {
-    return material.transmittance.size() > 0 && (material.transmittance != material.transmittance[0]).any();
-  };
-  if (std::none_of(scene.materials.begin(), scene.materials.end(), is_coloured)) return {};
-  return LightPaths(scene, tracing);
-}
-
 // Adds an irradiance with the standard error by its own rays.
 void add(GatheredIrradiance& gathered, const Field& irradiance, const Field& standard_error) {
   gathered.irradiance += irradiance;
   gathered.errors.rays = (gathered.errors.rays.square() + standard_error.square()).sqrt();
-}
-
-void add(GatheredIrradiance& gathered, const GatheredIrradiance& more) {
-  add(gathered, more.irradiance, more.errors.rays);
-  // The errors of both come from the same patches, so they add linearly.
-  gathered.errors.sampling += more.errors.sampling;
-  gathered.errors.mesh += more.errors.mesh;
-  gathered.errors.solver += more.errors.solver;
 }
 
 std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
@@ -83,28 +65,31 @@ std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
   return points;
 }
 
-// The light in mirrors and clear faces: of lamps, luminaires, sun and sky over each chain of mirrors, and all other
-// light of patches by rays. Nothing where reflections are not followed.
-std::optional<GatheredIrradiance> seen_in_mirrors(const Simulation& simulation, Field sent,
-                                                  const std::vector<Sensor>& sensors, const Observer& observer) {
+// The lamps whose mirrored light is computed over chains of mirrors.
+std::vector<LampSide> lamps_over_chains(const Simulation& simulation) {
   const World& world = *simulation.world;
-  const Scene& scene = world.sensor_scene();
-  const Lighting& lighting = world.sensor_lighting();
-  if (!lighting.mirrors) return {};
-  const PatchMesh& mesh = simulation.mesh;
-  std::vector<LampFace> lamps;
-  for (const auto& [polygon, side] : lamps_apart(scene, mesh, simulation.problem, world.tracing())) {
-    const auto faces = lamp_faces(scene, polygon, side);
-    lamps.insert(lamps.end(), faces.begin(), faces.end());
-    const auto [begin, end] = mesh.patches_on(polygon, side);
+  if (!world.sensor_lighting().mirrors) return {};
+  return lamps_apart(world.sensor_scene(), simulation.mesh, simulation.problem, world.tracing());
+}
+
+Field without_exitance(Field sent, const Simulation& simulation, std::span<const LampSide> lamps) {
+  for (const auto& [polygon, side] : lamps) {
+    const auto [begin, end] = simulation.mesh.patches_on(polygon, side);
     sent.middleRows(begin, end - begin) -= simulation.problem.exitance.middleRows(begin, end - begin);
   }
-  const std::uint64_t seed = simulation.plan.assembly.seed;
-  GatheredIrradiance found = gather_mirrored(mesh, sent, lighting.mirrors->view, world.all_faces(), sensors,
-                                             {.seed = seed, .errors = radiosity_errors(simulation)}, observer);
-  const auto direct = mirrored_irradiance(lighting, lamps, points_of(sensors), {.seed = seed}, observer);
-  add(found, direct.irradiance, direct.standard_error);
-  return found;
+  return sent;
+}
+
+// The light of these lamps, luminaires, sun and sky over chains of mirrors.
+DirectIrradiance over_chains(const Simulation& simulation, std::span<const LampSide> lamps,
+                             const std::vector<Sensor>& sensors, const Observer& observer) {
+  std::vector<LampFace> all;
+  for (const auto& [polygon, side] : lamps) {
+    const auto faces = lamp_faces(simulation.world->sensor_scene(), polygon, side);
+    all.insert(all.end(), faces.begin(), faces.end());
+  }
+  return mirrored_irradiance(simulation.world->sensor_lighting(), all, points_of(sensors),
+                             {.seed = simulation.plan.assembly.seed}, observer);
 }
 
 Readings readings_at(std::span<const SensorPlace> places, const Simulation& simulation, const Observer& observer) {
@@ -115,19 +100,28 @@ Readings readings_at(std::span<const SensorPlace> places, const Simulation& simu
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.assembly.seed;
-  const std::optional<LightPaths> coloured = coloured_paths(scene, world.tracing());
-  GatheredIrradiance gathered = gather_irradiance(
-      simulation.mesh, sent, world.all_faces(), sensors,
-      {.seed = seed, .errors = radiosity_errors(simulation), .coloured = coloured ? &*coloured : nullptr}, observer);
+  const Lighting& lighting = world.sensor_lighting();
+  const std::vector<LampSide> lamps = lamps_over_chains(simulation);
+  const Field mirrored = without_exitance(sent, simulation, lamps);
+  GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, world.all_faces(), sensors,
+                                                  {.seed = seed,
+                                                   .errors = radiosity_errors(simulation),
+                                                   .paths = &lighting.paths,
+                                                   .aim = lighting.mirrors ? &lighting.mirrors->aim : nullptr,
+                                                   .mirrored_light = &mirrored},
+                                                  observer);
   SensorErrors& errors = gathered.errors;
   // Light that is still under way, by how much is not known.
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
   if (!is_known) errors.solver = Field::Constant(errors.rays.rows(), errors.rays.cols(), std::nan(""));
   if (has_point_or_daylight(scene)) {
-    const auto direct = direct_irradiance(world.sensor_lighting(), points_of(sensors), {.seed = seed}, observer);
+    const auto direct = direct_irradiance(lighting, points_of(sensors), {.seed = seed}, observer);
     add(gathered, direct.irradiance, direct.standard_error);
   }
-  if (const auto mirrored = seen_in_mirrors(simulation, sent, sensors, observer)) add(gathered, *mirrored);
+  if (lighting.mirrors) {
+    const auto direct = over_chains(simulation, lamps, sensors, observer);
+    add(gathered, direct.irradiance, direct.standard_error);
+  }
   Readings readings = {.irradiance = at_places(gathered.irradiance, places),
                        .standard_error = at_places(errors.total(), places),
                        .errors = {.rays = at_places(errors.rays, places),

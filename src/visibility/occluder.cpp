@@ -170,11 +170,11 @@ struct Occluder::Tracer {
   const TriangleScene* blockers = nullptr;  // those that can block a segment
   TriangleScene own_blockers;               // unless these are all faces
   TriangleScene panes;                      // those that can weaken it
-  SpecularFaces specular;                   // where light is let through, or goes on as from a mirror
+  SurfaceOptics specular;                   // where light is let through, or goes on as from a mirror
   std::vector<std::uint8_t> left_out;
   ShaftCuller shafts;
 
-  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met, SpecularFaces of_scene);
+  Tracer(const Scene& scene, Blockers blockers, std::shared_ptr<const TracedFaces> met, SurfaceOptics of_scene);
 
   Point recentred(const Point& point) const { return faces->recentred(point); }
   float arriving_along(const Segment& ray, Crossed crossed) const;
@@ -185,7 +185,7 @@ struct Occluder::Tracer {
 };
 
 Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<const TracedFaces> met,
-                         SpecularFaces of_scene)
+                         SurfaceOptics of_scene)
     : faces(std::move(met)),
       blockers(&faces->triangles),
       specular(std::move(of_scene)),
@@ -334,7 +334,7 @@ TracingFrame Occluder::frame() const { return {tracer_->faces->centre, tracer_->
 Occluder::Occluder(const Scene& scene, Blockers blockers, Coverings coverings, Reflections reflections)
     : tracer_(std::make_unique<Tracer>(
           scene, blockers, std::make_shared<const TracedFaces>(scene, never_met(blockers, scene), std::move(coverings)),
-          has_both_kinds(blockers) ? SpecularFaces(scene, reflections) : SpecularFaces())) {}
+          has_both_kinds(blockers) ? SurfaceOptics(scene, reflections) : SurfaceOptics())) {}
 
 Occluder::Occluder(const Scene& scene, Blockers blockers, const Occluder& like)
     : tracer_(std::make_unique<Tracer>(scene, blockers, like.tracer_->faces, like.tracer_->specular)) {
@@ -356,7 +356,7 @@ double Occluder::specular_reflectance(PolygonIndex polygon, const Vector& direct
   return tracer_->specular.reflectance(polygon, direction);
 }
 
-const SpecularFaces& Occluder::specular_faces() const { return tracer_->specular; }
+const SurfaceOptics& Occluder::optics() const { return tracer_->specular; }
 
 Vector Occluder::mirrored(PolygonIndex polygon, const Vector& direction) const {
   return tracer_->specular.mirrored(polygon, direction);
@@ -507,7 +507,7 @@ Tracing::Tracing(const Scene& scene, Coverings coverings, Occluder::Blockers bet
       coverings_(std::move(coverings)),
       kind_(between_patches),
       has_openings_(has_openings(scene)),
-      has_specular_faces_(has_openings_ || has_mirrors(scene)),
+      has_specular_surfaces_(has_openings_ || has_mirrors(scene)),
       reflections_(reflections),
       between_patches_(std::make_shared<const Occluder>(scene, between_patches, coverings_, reflections)),
       later_(std::make_unique<Later>()) {}

@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 
 #include "scene/coverings.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 #include "visibility/shaft.h"
 
 #include <array>
@@ -58,7 +58,7 @@ struct Hit {
 };
 
 /// Decides visibility. Every polygon of the scene is opaque from both sides, unless Blockers exclude it; clear polygons
-/// transmit light as SpecularFace describes. Immutable and thread-safe.
+/// transmit light as SpecularSurface describes. Immutable and thread-safe.
 ///
 /// Rays are traced in single precision, in a scene recentered and scaled to unit extent. A hit counts only if the plane
 /// of the polygon separates the two ends of the ray in double precision, by more than 1e-9 of the extent at each end.
@@ -110,7 +110,7 @@ class Occluder {
   double specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
 
   /// The polygons at which rays pass through or are mirrored.
-  const SpecularFaces& specular_faces() const;
+  const SurfaceOptics& optics() const;
 
   /// The unit direction of a ray after a mirror reflection at a polygon.
   Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
@@ -189,7 +189,7 @@ class Tracing {
   Reflections reflections() const { return reflections_; }
 
   /// True when there are mirrors or clear faces.
-  bool has_specular_faces() const { return has_specular_faces_; }
+  bool has_specular_surfaces() const { return has_specular_surfaces_; }
 
   /// For rays between points of patches.
   const Occluder& between_patches() const { return *between_patches_; }
@@ -210,7 +210,7 @@ class Tracing {
   Coverings coverings_;
   Occluder::Blockers kind_;
   bool has_openings_;
-  bool has_specular_faces_;
+  bool has_specular_surfaces_;
   Reflections reflections_;
   std::shared_ptr<const Occluder> between_patches_;
   std::unique_ptr<Later> later_;

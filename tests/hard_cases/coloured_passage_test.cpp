@@ -3,7 +3,7 @@
 #include "patchlight/simulate.h"
 
 #include "pipeline/form_factors.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 #include "support/scenes.h"
 #include "transport/ray_transport.h"
 
@@ -264,7 +264,7 @@ TEST(ColouredPassage, IsSymmetricInEachClassOfWays) {
   Request request = by_few_rays(800);
   request.assembly.rays = 1024;
   const RayFormFactors found = find_ray_form_factors(scene, request);
-  const SpecularFaces faces(scene, Reflections::followed);
+  const SurfaceOptics faces(scene, Reflections::followed);
   const RowsByClass by_class = rows_by_class(found.exchange.rows, scene, faces);
   const Exchanged sums = exchanged_by_class(by_class, found.mesh, found.area);
   double squares = 0, variances = 0;

@@ -5,7 +5,7 @@
 #include "base/sampling.h"
 #include "form_factor/point_polygon.h"
 #include "light/pane.h"
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
 

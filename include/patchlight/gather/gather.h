@@ -12,6 +12,7 @@
 namespace patchlight {
 
 class LightPaths;
+class SpecularAim;
 class Occluder;
 
 /// Errors of the gathered radiosities, per patch and band, W/m^2. Empty fields count as zero.
@@ -33,7 +34,9 @@ struct GatherOptions {
   std::uint64_t seed = 1;
   bool slopes = true;  ///< light varies along patches; else each is even, and readings are linear in radiosity
   RadiosityErrors errors = {};
-  const LightPaths* coloured = nullptr;  ///< the paths per band; null if they are equal in all bands
+  const LightPaths* paths = nullptr;      ///< the sensors' clear faces and mirrors; null: those of the occluder
+  const SpecularAim* aim = nullptr;       ///< aims rays at these faces; null: rays find them by chance
+  const Field* mirrored_light = nullptr;  ///< the radiosity that mirrors show; null: all of it
 };
 
 /// Standard errors of irradiances by source, W/m^2.

@@ -150,13 +150,14 @@ DividedRoom divided_room() {
 }
 
 // Light and errors by rays over the hemisphere agree with those by shadow rays to every patch. The variances of 165
-// sensors with seven degrees of freedom each give the root mean square of their differences to about 7 %.
+// sensors with seven degrees of freedom each give the root mean square of their differences to about 7 %. The errors
+// of patches at one sensor are known to some 20 %, and without bias, so that all 165 differ by 2 % at most.
 TEST(GatherIrradiance, ByTheHemisphereAgreesWithShadowRaysToEveryPatch) {
   DividedRoom room = divided_room();
   ASSERT_GT(room.options.least_rays * static_cast<int>(room.mesh.size()), room.options.rays);
   const Tracing tracing(room.scene, {}, Occluder::Blockers::all);
   const LightPaths paths(room.scene, tracing);
-  room.options.coloured = &paths;
+  room.options.paths = &paths;
   const SensorGroup grid = rectangle_grid(Point(0, 0, 0.3), {Vector(4, 0, 0), Vector(0, 3, 0)}, 0.25);
   const GatheredIrradiance found =
       gather_irradiance(room.mesh, room.radiosity, tracing.all_faces(), grid.sensors, room.options);
@@ -171,9 +172,7 @@ TEST(GatherIrradiance, ByTheHemisphereAgreesWithShadowRaysToEveryPatch) {
   const auto ratio = [](const Field& a, const Field& b) { return std::sqrt(a.square().sum() / b.square().sum()); };
   EXPECT_NEAR(ratio(found.errors.solver, exact.errors.solver), 1, 0.01);
   EXPECT_NEAR(ratio(found.errors.sampling, exact.errors.sampling), 1, 0.02);
-  // The shares of patches that are hidden are noisy by the hemisphere, and their errors count without sign.
-  EXPECT_GT(ratio(found.errors.mesh, exact.errors.mesh), 0.95);
-  EXPECT_LT(ratio(found.errors.mesh, exact.errors.mesh), 1.15);
+  EXPECT_NEAR(ratio(found.errors.mesh, exact.errors.mesh), 1, 0.02);
 }
 
 // Each of more than a thousand patches: rays that all meet the same radiosity have no scatter.

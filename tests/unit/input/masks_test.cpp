@@ -1,7 +1,7 @@
 // Partly covered surfaces: alpha of textures in glTF, map_d in OBJ.
 #include "input/picture_colours.h"
 #include "model_files.h"
-#include "scene/specular_faces.h"
+#include "light/pane.h"
 
 #include <cstring>
 #include <gtest/gtest.h>
@@ -35,8 +35,8 @@ ReadOptions with(const std::vector<std::string>& settings) {
 void expect_holes(const Material& material, double covered, const Spectrum& reflectance) {
   expect_near(material.transmittance, Spectrum::Constant(3, 1 - covered));
   expect_near(material.reflectance, reflectance);
-  expect_near(transmittance(panes_of(material), 0.1), Spectrum::Constant(3, 1 - covered));
-  const Spectrum held = hemispherical_held(panes_of(material));
+  expect_near(transmittance(panes_of(material.index, material.transmittance), 0.1), Spectrum::Constant(3, 1 - covered));
+  const Spectrum held = hemispherical_held(panes_of(material.index, material.transmittance));
   EXPECT_NEAR(held[0], covered, 1e-9);
   EXPECT_FALSE(material.texture);
 }

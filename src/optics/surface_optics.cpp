@@ -1,4 +1,4 @@
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include "base/sampling.h"
 #include "light/photometry.h"
@@ -11,54 +11,19 @@
 
 namespace patchlight {
 
-std::vector<Pane> panes_of(const Material& material) {
-  std::vector<Pane> panes;
-  for (const double share : material.transmittance) panes.push_back(pane_of(material.index, share));
-  return panes;
-}
-
-Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
-  Spectrum share(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t band = 0; band < panes.size(); ++band)
-    share[static_cast<Eigen::Index>(band)] = transmittance(panes[band], cosine);
-  return share;
-}
-
-Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
-  Spectrum share(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t band = 0; band < panes.size(); ++band)
-    share[static_cast<Eigen::Index>(band)] = specular_reflectance(panes[band], cosine);
-  return share;
-}
-
 double cosine_between(const Vector& normal, const Vector& direction) {
   return std::min(1.0, std::abs(normal.dot(direction)));
 }
 
-double held_of(double transmittance) { return std::max(1e-6, 1 - transmittance); }
-
-double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.5) / cosine_steps; }
-
-// That up to a cosine is its square.
-double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
-
-Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on) {
-  Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t k = 0; k < cosine_steps; ++k) {
-    Spectrum onward = transmittance(panes, cosine_of_step(k));
-    if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
-    held += irradiance_of_step(k) * onward.unaryExpr(&held_of);
-  }
-  return held;
-}
-
-SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections)
-    : reflections_(reflections) {
+SpecularSurface::SpecularSurface(const Scene& scene, PolygonIndex polygon, Reflections reflections)
+    : reflections_(reflections), bands_(number_of_bands(scene)) {
   const Spectrum shares = luminous_shares(bands_of(scene));
   const bool is_clear = is_opening(scene, polygon);
   for (const Side side : {Side::front, Side::back}) {
     const Material& material = scene.materials[material_on(scene.polygons[polygon], side)];
-    const std::vector<Pane> panes = panes_of(material);
+    const auto s = static_cast<std::size_t>(side);
+    if (is_clear) panes_[s] = panes_of(material.index, material.transmittance);
+    const std::vector<Pane>& panes = panes_[s];
     if (is_clear) index_ += material.index / 2;
     for (std::size_t band = 0; band < panes.size() && is_clear; ++band) {
       const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
@@ -72,7 +37,7 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
       }
     }
     if (is_clear || reflections == Reflections::kept) continue;
-    const auto s = static_cast<std::size_t>(side);
+    mirrors_[s] = material.specular_reflectance;
     is_mirror_[s] = is_mirror(scene, polygon, side) ? 1 : 0;
     for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band)
       mirrored_[s] += shares[band] * material.specular_reflectance[band];
@@ -81,7 +46,26 @@ SpecularFace::SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections
   if (is_clear) keep_what_panes_hold();
 }
 
-void SpecularFace::keep_what_panes_hold() {
+Spectrum SpecularSurface::spectral_transmittance(Side side, double cosine) const {
+  const std::vector<Pane>& panes = panes_[static_cast<std::size_t>(side)];
+  return panes.empty() ? Spectrum(Spectrum::Zero(bands_)) : patchlight::transmittance(panes, cosine);
+}
+
+Spectrum SpecularSurface::spectral_reflectance(Side side, double cosine) const {
+  const auto s = static_cast<std::size_t>(side);
+  if (reflections_ == Reflections::followed && !panes_[s].empty()) return specular_reflectance(panes_[s], cosine);
+  return mirrors_[s].size() > 0 ? mirrors_[s] : Spectrum(Spectrum::Zero(bands_));
+}
+
+bool SpecularSurface::is_coloured() const {
+  const auto differs = [](const Pane& a, const Pane& b) { return a.index != b.index || a.internal != b.internal; };
+  for (const std::vector<Pane>& panes : panes_)
+    if (std::adjacent_find(panes.begin(), panes.end(), differs) != panes.end()) return true;
+  return std::any_of(mirrors_.begin(), mirrors_.end(),
+                     [](const Spectrum& mirror) { return mirror.size() > 0 && (mirror != mirror[0]).any(); });
+}
+
+void SpecularSurface::keep_what_panes_hold() {
   held_upto_.push_back(0);
   for (std::size_t k = 0; k < cosine_steps; ++k)
     held_upto_.push_back(held_upto_.back() + irradiance_of_step(k) * kept(cosine_of_step(k)));
@@ -89,28 +73,28 @@ void SpecularFace::keep_what_panes_hold() {
   for (double& upto : held_upto_) upto /= held_[0];
 }
 
-double SpecularFace::transmittance(double cosine) const {
+double SpecularSurface::transmittance(double cosine) const {
   double sum = 0;
   for (const Part& part : parts_) sum += part.weight * patchlight::transmittance(part.pane, cosine);
   return sum;
 }
 
-double SpecularFace::reflected_by_panes(double cosine) const {
+double SpecularSurface::reflected_by_panes(double cosine) const {
   if (reflections_ == Reflections::kept) return 0;
   double sum = 0;
   for (const Part& part : parts_) sum += part.weight * specular_reflectance(part.pane, cosine);
   return sum;
 }
 
-double SpecularFace::reflectance(Side side, double cosine) const {
+double SpecularSurface::reflectance(Side side, double cosine) const {
   return parts_.empty() ? mirrored_[static_cast<std::size_t>(side)] : reflected_by_panes(cosine);
 }
 
-double SpecularFace::kept(double cosine) const { return held_of(transmittance(cosine) + reflected_by_panes(cosine)); }
+double SpecularSurface::kept(double cosine) const { return held_of(transmittance(cosine) + reflected_by_panes(cosine)); }
 
-double SpecularFace::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
+double SpecularSurface::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
 
-SpecularShares SpecularFace::shares(Side side, double cosine) const {
+SpecularShares SpecularSurface::shares(Side side, double cosine) const {
   if (parts_.empty()) {
     const auto s = static_cast<std::size_t>(side);
     return {0, mirrored_[s], held_[s], 1};
@@ -121,21 +105,21 @@ SpecularShares SpecularFace::shares(Side side, double cosine) const {
   return shares;
 }
 
-double SpecularFace::mirrored_rays(Side side, double cosine) const {
+double SpecularSurface::mirrored_rays(Side side, double cosine) const {
   if (parts_.empty()) return is_mirror_[static_cast<std::size_t>(side)];
   return reflections_ == Reflections::kept ? 0 : specular_reflectance(Pane{index_, 1}, cosine);
 }
 
-double SpecularFace::kind(Side side) const {
+double SpecularSurface::kind(Side side) const {
   if (parts_.empty()) return is_mirror_[static_cast<std::size_t>(side)];
   return reflections_ == Reflections::kept ? -1 : 1 + index_;
 }
 
 // A mirror keeps the same share at all angles.
-double SpecularFace::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
+double SpecularSurface::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
 
 // Within a step the density is taken as even.
-double SpecularFace::held_cosine(double u) const {
+double SpecularSurface::held_cosine(double u) const {
   if (parts_.empty()) return std::sqrt(u);
   const auto next = std::upper_bound(held_upto_.begin() + 1, held_upto_.end() - 1, u);
   const double before = *(next - 1);
@@ -143,7 +127,8 @@ double SpecularFace::held_cosine(double u) const {
   return std::clamp((step + (u - before) / (*next - before)) / cosine_steps, 0.0, 1.0);
 }
 
-SpecularFaces::SpecularFaces(const Scene& scene, Reflections reflections) {
+SurfaceOptics::SurfaceOptics(const Scene& scene, Reflections reflections)
+    : bands_(number_of_bands(scene)), reflections_(reflections) {
   std::map<std::pair<MaterialIndex, MaterialIndex>, std::uint32_t> known;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     if (!is_opening(scene, p) && !is_mirror(scene, p, Side::front) && !is_mirror(scene, p, Side::back)) continue;
@@ -160,53 +145,72 @@ SpecularFaces::SpecularFaces(const Scene& scene, Reflections reflections) {
   }
 }
 
-const SpecularFace* SpecularFaces::at(PolygonIndex polygon) const {
+bool SurfaceOptics::is_coloured() const {
+  return std::any_of(faces_.begin(), faces_.end(), [](const SpecularSurface& face) { return face.is_coloured(); });
+}
+
+const SpecularSurface* SurfaceOptics::at(PolygonIndex polygon) const {
   if (polygon >= of_polygon_.size() || of_polygon_[polygon] == not_specular) return nullptr;
   return &faces_[of_polygon_[polygon]];
 }
 
-double SpecularFaces::transmittance(PolygonIndex polygon, const Vector& direction) const {
-  const SpecularFace* const face = at(polygon);
+double SurfaceOptics::transmittance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularSurface* const face = at(polygon);
   return face ? face->transmittance(cosine_between(normals_[polygon], direction)) : 0;
 }
 
-double SpecularFaces::reflectance(PolygonIndex polygon, const Vector& direction) const {
-  const SpecularFace* const face = at(polygon);
-  if (!face) return 0;
-  const Side met = normals_[polygon].dot(direction) < 0 ? Side::front : Side::back;
-  return face->reflectance(met, cosine_between(normals_[polygon], direction));
+double SurfaceOptics::reflectance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularSurface* const face = at(polygon);
+  return face ? face->reflectance(side_met(polygon, direction), cosine_between(normals_[polygon], direction)) : 0;
 }
 
-SpecularShares SpecularFaces::shares(PolygonIndex polygon, Side side, double cosine) const {
-  const SpecularFace* const face = at(polygon);
+// Light meets a front against its normal.
+Side SurfaceOptics::side_met(PolygonIndex polygon, const Vector& direction) const {
+  return normals_[polygon].dot(direction) < 0 ? Side::front : Side::back;
+}
+
+Spectrum SurfaceOptics::spectral_transmittance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularSurface* const face = at(polygon);
+  if (!face) return Spectrum::Zero(bands_);
+  return face->spectral_transmittance(side_met(polygon, direction), cosine_between(normals_[polygon], direction));
+}
+
+Spectrum SurfaceOptics::spectral_reflectance(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularSurface* const face = at(polygon);
+  if (!face) return Spectrum::Zero(bands_);
+  return face->spectral_reflectance(side_met(polygon, direction), cosine_between(normals_[polygon], direction));
+}
+
+SpecularShares SurfaceOptics::shares(PolygonIndex polygon, Side side, double cosine) const {
+  const SpecularSurface* const face = at(polygon);
   return face ? face->shares(side, cosine) : SpecularShares();
 }
 
-std::vector<std::array<double, 2>> SpecularFaces::kinds(std::size_t polygons) const {
+std::vector<std::array<double, 2>> SurfaceOptics::kinds(std::size_t polygons) const {
   std::vector<std::array<double, 2>> kinds(polygons, {0, 0});
   for (PolygonIndex p = 0; p < polygons; ++p) {
-    if (const SpecularFace* const face = at(p)) kinds[p] = {face->kind(Side::front), face->kind(Side::back)};
+    if (const SpecularSurface* const face = at(p)) kinds[p] = {face->kind(Side::front), face->kind(Side::back)};
   }
   return kinds;
 }
 
-Vector SpecularFaces::mirrored(PolygonIndex polygon, const Vector& direction) const {
+Vector SurfaceOptics::mirrored(PolygonIndex polygon, const Vector& direction) const {
   const Vector& normal = normals_[polygon];
   return direction - 2 * normal.dot(direction) * normal;
 }
 
-double SpecularFaces::held(PolygonIndex polygon, Side side) const {
-  const SpecularFace* const face = at(polygon);
+double SurfaceOptics::held(PolygonIndex polygon, Side side) const {
+  const SpecularSurface* const face = at(polygon);
   return face ? face->held(side) : 1;
 }
 
-double SpecularFaces::relative_held(PolygonIndex polygon, const Vector& direction) const {
-  const SpecularFace* const face = at(polygon);
+double SurfaceOptics::relative_held(PolygonIndex polygon, const Vector& direction) const {
+  const SpecularSurface* const face = at(polygon);
   return face ? face->relative_held(cosine_between(normals_[polygon], direction)) : 1;
 }
 
-Vector SpecularFaces::held_direction(PolygonIndex polygon, double u, double v) const {
-  const SpecularFace* const face = at(polygon);
+Vector SurfaceOptics::held_direction(PolygonIndex polygon, double u, double v) const {
+  const SpecularSurface* const face = at(polygon);
   if (!face) return square_to_cosine_hemisphere(u, v);
   const double cosine = face->held_cosine(u);
   const double sine = std::sqrt(1 - cosine * cosine);

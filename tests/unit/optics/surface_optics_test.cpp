@@ -1,11 +1,11 @@
-#include "scene/specular_faces.h"
+#include "optics/surface_optics.h"
 
 #include "support/scenes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight::specular_faces_test {
+namespace patchlight::surface_optics_test {
 namespace {
 
 using namespace test;
@@ -18,9 +18,9 @@ Scene coloured_pane(const Spectrum& transmittance) {
   return with_quad(std::move(scene), {Point(0, 0, 1), Point(1, 0, 1), Point(1, 1, 1), Point(0, 1, 1)}, 0);
 }
 
-TEST(SpecularFace, IsTheMeanOfItsPanesByLuminance) {
+TEST(SpecularSurface, IsTheMeanOfItsPanesByLuminance) {
   const Spectrum stated = rgb(0.9, 0.5, 0.2);
-  const SpecularFace face(coloured_pane(stated), 1);
+  const SpecularSurface face(coloured_pane(stated), 1);
   for (const double cosine : {1.0, 0.6, 0.1}) {
     const double expected = 0.2126 * transmittance(pane_of(1.52, 0.9), cosine) +
                             0.7152 * transmittance(pane_of(1.52, 0.5), cosine) +
@@ -29,16 +29,16 @@ TEST(SpecularFace, IsTheMeanOfItsPanesByLuminance) {
   }
 }
 
-TEST(SpecularFace, TakesHalfOfEachSide) {
+TEST(SpecularSurface, TakesHalfOfEachSide) {
   Scene scene = coloured_pane(rgb(0.8, 0.8, 0.8));
   scene.polygons[1].back_material = 1;
-  EXPECT_NEAR(SpecularFace(scene, 1).transmittance(1), 0.4, 1e-14);
+  EXPECT_NEAR(SpecularSurface(scene, 1).transmittance(1), 0.4, 1e-14);
 }
 
-TEST(SpecularFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
+TEST(SpecularSurface, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
   // 2 int mu w(mu) dmu = 1 by Simpson's rule, which has the fourth order. The remaining error is that of the 1,024
   // steps.
-  const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
+  const SpecularSurface face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int intervals = 4096;
   double sum = 0;
   for (int k = 0; k <= intervals; ++k) {
@@ -51,10 +51,10 @@ TEST(SpecularFace, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
   EXPECT_NEAR(hemispherical_held({pane_of(1.52, 0.8)})[0], face.held(Side::front), 1e-14);
 }
 
-TEST(SpecularFace, SamplesDirectionsAsItHoldsLight) {
+TEST(SpecularSurface, SamplesDirectionsAsItHoldsLight) {
   // The mean of any f over these directions is 2 int f mu w dmu. It is 1 for f = 1 / w, the case of cosine weights, and
   // 2 / 3 for f = mu / w.
-  const SpecularFace face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
+  const SpecularSurface face(coloured_pane(rgb(0.8, 0.8, 0.8)), 1);
   constexpr int samples = 100000;
   double one = 0;
   double cosine = 0;
@@ -67,8 +67,8 @@ TEST(SpecularFace, SamplesDirectionsAsItHoldsLight) {
   EXPECT_NEAR(cosine, 2.0 / 3, 1e-4);
 }
 
-TEST(SpecularFaces, KnowWhichPolygonsAreClear) {
-  const SpecularFaces faces(coloured_pane(rgb(0.8, 0.8, 0.8)));
+TEST(SurfaceOptics, KnowWhichPolygonsAreClear) {
+  const SurfaceOptics faces(coloured_pane(rgb(0.8, 0.8, 0.8)));
   EXPECT_FALSE(faces.empty());
   EXPECT_EQ(faces.held(0, Side::front), 1);
   EXPECT_EQ(faces.transmittance(0, Vector::UnitZ()), 0);
@@ -76,8 +76,8 @@ TEST(SpecularFaces, KnowWhichPolygonsAreClear) {
   EXPECT_EQ(faces.relative_held(no_polygon, Vector::UnitZ()), 1);
   EXPECT_NEAR(faces.transmittance(1, -Vector::UnitZ()), 0.8, 1e-14);
   EXPECT_LT(faces.transmittance(1, Vector(0.8, 0, 0.6)), 0.78);
-  EXPECT_TRUE(SpecularFaces(cube_room(0.5, 1)).empty());
+  EXPECT_TRUE(SurfaceOptics(cube_room(0.5, 1)).empty());
 }
 
 }  // namespace
-}  // namespace patchlight::specular_faces_test
+}  // namespace patchlight::surface_optics_test

@@ -11,34 +11,8 @@
 
 namespace patchlight {
 
-/// The panes that a clear material is, one per band; none of an opaque one.
-std::vector<Pane> panes_of(const Material& material);
-
-/// The share that they transmit at an angle of incidence with this cosine, per band.
-Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
-
-/// The share that they reflect as mirrors do.
-Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
-
 /// The absolute cosine of the angle between a unit normal and a unit direction.
 double cosine_between(const Vector& normal, const Vector& direction);
-
-/// The share of light that is kept, to be reflected or absorbed: 1 less the transmittance, and 1e-6 at least.
-double held_of(double transmittance);
-
-/// Light from all directions alike, by the cosine of its angle to a normal: so many parts of the range of the cosine,
-/// the midpoints of which stand for them, give the share held by ordinary glass within 2e-6.
-inline constexpr std::size_t cosine_steps = 1024;
-
-/// The middle of a part.
-double cosine_of_step(std::size_t step);
-
-/// The share of the irradiance that comes within a part; 1 in all.
-double irradiance_of_step(std::size_t step);
-
-/// The share of light from all directions alike, weighted as irradiance is, that panes keep, per band; without their
-/// reflections where these go on.
-Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on = false);
 
 /// Whether a face keeps the light that it reflects as a mirror does, or that light goes on.
 enum class Reflections : bool { kept, followed };
@@ -54,10 +28,10 @@ struct SpecularShares {
 /// A clear polygon or a mirror as light between patches meets it: one number for all bands, weighted as luminance is.
 /// A clear one transmits and reflects the same both ways, the mean of its two sides; each side of a mirror
 /// has a reflectance of its own, 0 if it is none. Cosines are those of the angle to its normal, in [0, 1].
-class SpecularFace {
+class SpecularSurface {
  public:
   /// `polygon` must be an opening, see is_opening(), or have a mirror side, see is_mirror().
-  SpecularFace(const Scene& scene, PolygonIndex polygon, Reflections reflections = Reflections::kept);
+  SpecularSurface(const Scene& scene, PolygonIndex polygon, Reflections reflections = Reflections::kept);
 
   /// The share that goes straight through.
   double transmittance(double cosine) const;
@@ -74,6 +48,10 @@ class SpecularFace {
   /// All of these.
   SpecularShares shares(Side side, double cosine) const;
 
+  /// The same two fractions of light that meets a side, per band, by the material of this side.
+  Spectrum spectral_transmittance(Side side, double cosine) const;
+  Spectrum spectral_reflectance(Side side, double cosine) const;
+
   /// With which probability a ray that follows light is mirrored rather than let through: the reflectance of a pane of
   /// the index of refraction that absorbs nothing, so that it is of the geometry and not of the color; 1 of a side
   /// that is a mirror, 0 where clear ones keep their reflections.
@@ -82,6 +60,9 @@ class SpecularFace {
   /// Whether rays go on from a side.
   bool is_specular(Side side) const { return is_clear() || is_mirror_[static_cast<std::size_t>(side)] != 0; }
   bool is_clear() const { return !parts_.empty(); }
+
+  /// True if it transmits or mirrors the bands differently.
+  bool is_coloured() const;
 
   /// A number for the properties behind mirrored_rays(): 0 of a side from which no ray goes on, 1 of a mirror, the
   /// index of refraction and 1 of a clear one, less than 0 where that keeps its reflections.
@@ -102,6 +83,9 @@ class SpecularFace {
 
   Reflections reflections_;
   double index_ = 0;                         // of clear ones, the mean of both sides
+  Eigen::Index bands_;
+  std::array<std::vector<Pane>, 2> panes_;   // of a clear one, per side and band; empty on an opaque side
+  std::array<Spectrum, 2> mirrors_;          // per side; empty where it is no mirror
   std::array<std::uint8_t, 2> is_mirror_{};  // by sides, in some band
   std::vector<Part> parts_;                  // each pane once; none of a mirror
   std::array<double, 2> mirrored_{};         // by the sides of a mirror
@@ -111,28 +95,42 @@ class SpecularFace {
 
 /// The clear polygons and mirrors of a scene; all others scatter or absorb all light that they meet. Directions are
 /// unit vectors, those in which light is seen: a front is met against its normal.
-class SpecularFaces {
+class SurfaceOptics {
  public:
   /// None.
-  SpecularFaces() = default;
-  explicit SpecularFaces(const Scene& scene, Reflections reflections = Reflections::kept);
+  SurfaceOptics() = default;
+  explicit SurfaceOptics(const Scene& scene, Reflections reflections = Reflections::kept);
 
   bool empty() const { return faces_.empty(); }
 
-  /// The functions of SpecularFace for a polygon. All others transmit and reflect nothing: 0, and hold all light: 1.
+  /// True if light goes on from mirrors and clear faces after a reflection.
+  bool mirrors() const { return !faces_.empty() && reflections_ == Reflections::followed; }
+
+  /// True if some face transmits or mirrors the bands differently.
+  bool is_coloured() const;
+
+  /// The functions of SpecularSurface for a polygon. All others transmit and reflect nothing: 0, and hold all light: 1.
   double transmittance(PolygonIndex polygon, const Vector& direction) const;
   double reflectance(PolygonIndex polygon, const Vector& direction) const;
   SpecularShares shares(PolygonIndex polygon, Side side, double cosine) const;
   double held(PolygonIndex polygon, Side side) const;
   double relative_held(PolygonIndex polygon, const Vector& direction) const;
 
+  /// The fractions of light, per band, that go straight through a polygon and that it mirrors.
+  Spectrum spectral_transmittance(PolygonIndex polygon, const Vector& direction) const;
+  Spectrum spectral_reflectance(PolygonIndex polygon, const Vector& direction) const;
+  Eigen::Index bands() const { return bands_; }
+
+  /// True if light goes straight through a polygon from some side.
+  bool is_clear(PolygonIndex polygon) const { return at(polygon) != nullptr && at(polygon)->is_clear(); }
+
   /// The face of a polygon that is specular; null of all others.
-  const SpecularFace* at(PolygonIndex polygon) const;
+  const SpecularSurface* at(PolygonIndex polygon) const;
 
   /// The unit normal of a polygon's front; there must be specular ones.
   const Vector& normal(PolygonIndex polygon) const { return normals_[polygon]; }
 
-  /// SpecularFace::kind() of front and back of each of so many polygons.
+  /// SpecularSurface::kind() of front and back of each of so many polygons.
   std::vector<std::array<double, 2>> kinds(std::size_t polygons) const;
 
   /// The direction in which a mirror is seen in another: that after the reflection at a polygon of this scene that is
@@ -145,8 +143,12 @@ class SpecularFaces {
   Vector held_direction(PolygonIndex polygon, double u, double v) const;
 
  private:
+  Side side_met(PolygonIndex polygon, const Vector& direction) const;
+
   static constexpr std::uint32_t not_specular = ~0U;
-  std::vector<SpecularFace> faces_;        // each pair of materials once
+  Eigen::Index bands_ = 0;
+  Reflections reflections_ = Reflections::kept;
+  std::vector<SpecularSurface> faces_;        // each pair of materials once
   std::vector<std::uint32_t> of_polygon_;  // none where no polygon is specular, as normals
   std::vector<Vector> normals_;            // of the fronts
 };
