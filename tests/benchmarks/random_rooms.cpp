@@ -6,9 +6,12 @@
 //   --only TEXT               only rooms whose name contains the text, e.g. overhang_03
 //   --paths P                 most paths per sensor; a pilot decides how many [default: 524288]
 //   --probes N                patches per room whose error is compared with the stated total [default: 12]
+//   --pixels N                instead compares sensors, pixels of final pictures and paths at N places per room, on its
+//                             surfaces; every other room has colored panes, mirrors and sheets [default: 0, off]
 //   --references FOLDER       keeps results of path tracing, so that later runs need not repeat it
 //   --write FOLDER            writes the rooms in which a sensor or the total is outside its error bar
 //   --markdown FILE           writes the table as a page
+#include "random_room_pixels.h"
 #include "support/random_rooms.h"
 
 #include "patchlight/simulate.h"
@@ -65,6 +68,7 @@ struct Options {
   std::string only;
   std::uint32_t paths = 524288;
   std::size_t probes = 12;
+  std::size_t pixels = 0;
   path references;
   path write;
   path markdown;
@@ -93,6 +97,8 @@ Options parse(int count, char** values) {
       options.paths = static_cast<std::uint32_t>(std::stoul(value));
     else if (name == "--probes")
       options.probes = std::stoul(value);
+    else if (name == "--pixels")
+      options.pixels = std::stoul(value);
     else if (name == "--references")
       options.references = value;
     else if (name == "--write")
@@ -530,7 +536,10 @@ std::vector<RandomRoom> make_rooms(const Options& options) {
   std::vector<RandomRoom> rooms;
   const auto add = [&](const std::vector<std::string>& kinds, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
-      RandomRoom room = test::make_random_room(kinds[k % kinds.size()], k / kinds.size(), options.seed);
+      const std::size_t number = k / kinds.size();
+      const bool is_mixed = options.pixels > 0 && (k + number) % 2 == 1;
+      RandomRoom room = test::make_random_room(kinds[k % kinds.size()], number, options.seed,
+                                               is_mixed ? test::RoomOptics::mixed : test::RoomOptics::plain);
       if (room.name.find(options.only) != std::string::npos) rooms.push_back(std::move(room));
     }
   };
@@ -539,7 +548,41 @@ std::vector<RandomRoom> make_rooms(const Options& options) {
   return rooms;
 }
 
+// One line for each comparison in which two of sensor, pixel and path differ by more than three standard errors.
+void print_outliers(const std::vector<PixelComparison>& comparisons) {
+  for (const PixelComparison& c : comparisons) {
+    const double sensor = (c.sensor - c.path) / std::hypot(c.sensor_error, c.path_error);
+    const double pixel = (c.pixel - c.path) / std::hypot(c.pixel_error, c.sensor_error, c.path_error);
+    if (std::abs(sensor) <= 3 && std::abs(pixel) <= 3) continue;
+    std::printf("  %s  sensor %.5g +- %.2g  pixel %.5g +- %.2g  path %.5g +- %.2g  z %+.1f %+.1f\n", c.place.c_str(),
+                c.sensor, c.sensor_error, c.pixel, c.pixel_error, c.path, c.path_error, sensor, pixel);
+  }
+}
+
+void run_pixels(const Options& options) {
+  const path folder = std::filesystem::temp_directory_path() / ("patchlight-pixels-" + std::to_string(getpid()));
+  std::vector<PixelComparison> all;
+  for (const RandomRoom& room : make_rooms(options)) {
+    const cli::SolveArguments arguments = tool_arguments(write_random_room(room, folder), options.solve);
+    const cli::SolveInput input = cli::read_input(arguments);
+    const ThreadLimit limit(arguments.request.resources.threads);
+    const double begin = cpu_seconds();
+    const Simulation simulation = simulate(input.scene, input.request);
+    const double solved = cpu_seconds();
+    const auto found = compare_pixels(room, simulation, options.pixels, options.paths, options.seed);
+    std::printf("%s %u patches, CPU %.1f s + %.1f s\n", room.name.c_str(), simulation.mesh.size(), solved - begin,
+                cpu_seconds() - solved);
+    print_outliers(found);
+    std::fflush(stdout);
+    all.insert(all.end(), found.begin(), found.end());
+    if (!options.write.empty()) write_random_room(room, options.write);
+    std::filesystem::remove_all(folder);
+  }
+  std::printf("\n%s", table_of(all).c_str());
+}
+
 void run(const Options& options) {
+  if (options.pixels > 0) return run_pixels(options);
   const path folder = std::filesystem::temp_directory_path() / ("patchlight-random-rooms-" + std::to_string(getpid()));
   std::vector<RoomResult> results;
   for (const RandomRoom& room : make_rooms(options)) {

@@ -66,15 +66,24 @@ std::string mtl_text(const RandomRoom& room) {
   return text.str();
 }
 
+// A share of each band; one number where all are equal.
+std::string format_tinted(double share, const std::array<double, 3>& tint) {
+  const auto& [r, g, b] = tint;
+  return r == 1 && g == 1 && b == 1 ? format(share) : format_array(share * Vector(r, g, b));
+}
+
 std::string toml_materials(const RandomRoom& room) {
   std::ostringstream text;
   for (const RoomMaterial& material : room.materials) {
+    const std::string head = "[[material]]\nname = \"" + material.name + "\"\n";
     if (material.transmittance > 0)
-      text << "[[material]]\nname = \"" << material.name << "\"\ntransmittance = " << format(material.transmittance)
+      text << head << "transmittance = " << format_tinted(material.transmittance, material.tint)
            << "\nindex = 1.52\n\n";
     if (material.specular_reflectance > 0)
-      text << "[[material]]\nname = \"" << material.name
-           << "\"\nspecular_reflectance = " << format(material.specular_reflectance) << "\n\n";
+      text << head << "specular_reflectance = " << format_tinted(material.specular_reflectance, material.tint)
+           << "\n\n";
+    if (material.diffuse_transmittance > 0)
+      text << head << "diffuse_transmittance = " << format(material.diffuse_transmittance) << "\n\n";
   }
   return text.str();
 }

@@ -501,6 +501,43 @@ void add_lamp_parts(Draft& draft) {
   if (kind == "furnished" || dice.chance(0.2)) add_furniture(draft);
 }
 
+// An upright rectangle, turned about its center, that stands below the lamps: the first of twenty that is clear of other
+// bodies. Without such a place there is none.
+void add_upright(Draft& draft, const RoomMaterial& material) {
+  Dice& dice = draft.dice;
+  const Vector& size = draft.room.size;
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const double w = dice.between(0.4, 1.2), bottom = dice.between(0.02, 0.4);
+    const Point centre(dice.between(0.65, size.x() - 0.65), dice.between(0.65, size.y() - 0.65), bottom);
+    const Vector height = dice.between(0.5, size.z() - 0.9 - bottom) * Vector::UnitZ();
+    const Faces faces = turn_about({make_face(material.name, material.name, centre - w / 2 * Vector::UnitX(),
+                                              w * Vector::UnitX(), height)},
+                                   centre, dice.between(-180, 180));
+    if (!fits(draft, faces)) continue;
+    draft.add_body(faces);
+    draft.room.materials.push_back(material);
+    return;
+  }
+}
+
+// A colored pane, a colored mirror and a sheet in the room, each with some probability, and often a tinted window.
+void add_optics(Draft& draft) {
+  Dice& dice = draft.dice;
+  const auto tint = [&] {
+    return std::array<double, 3>{dice.between(0.3, 1), dice.between(0.3, 1), dice.between(0.3, 1)};
+  };
+  for (RoomMaterial& material : draft.room.materials)
+    if (material.name == "glass" && dice.chance(0.6)) material.tint = tint();
+  if (dice.chance(0.6))
+    add_upright(draft, {.name = "color_pane", .transmittance = dice.between(0.6, 0.9), .tint = tint()});
+  if (dice.chance(0.4))
+    add_upright(draft, {.name = "color_mirror", .specular_reflectance = dice.between(0.7, 0.95), .tint = tint()});
+  if (!dice.chance(0.6)) return;
+  const double back = dice.between(0.2, 0.5);
+  add_upright(draft,
+              {.name = "sheet", .reflectance = {back, back, back}, .diffuse_transmittance = dice.between(0.2, 0.45)});
+}
+
 // Nine sensors on a work plane, four near walls, one that faces a distant wall, one near the ceiling that faces down.
 void add_sensors(Draft& draft) {
   const Vector size = draft.room.size;
@@ -534,7 +571,7 @@ std::vector<std::string> lamp_kinds() {
   return {"panels", "spots", "luminaires", "mirrors", "many_lamps", "egg_crate", "two_rooms", "furnished"};
 }
 
-RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed) {
+RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed, RoomOptics optics) {
   const std::vector<std::string> daylight = daylight_kinds(), lamps = lamp_kinds();
   const auto by_day = std::find(daylight.begin(), daylight.end(), kind);
   const auto by_lamp = std::find(lamps.begin(), lamps.end(), kind);
@@ -551,6 +588,7 @@ RandomRoom make_random_room(const std::string& kind, std::size_t number, std::ui
     add_daylight_parts(draft);
   else
     add_lamp_parts(draft);
+  if (optics == RoomOptics::mixed) add_optics(draft);
   add_sensors(draft);
   return draft.room;
 }

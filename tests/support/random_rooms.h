@@ -19,13 +19,16 @@ struct RoomFace {
   std::vector<Point> corners;  ///< meters
 };
 
-/// A material of three bands. A pane has a transmittance, a mirror a specular reflectance.
+/// A material of three bands. A pane has a transmittance, a mirror a specular reflectance, a sheet a diffuse
+/// transmittance.
 struct RoomMaterial {
   std::string name;
   std::array<double, 3> reflectance{};
   double exitance = 0;  ///< W/m^2
   double transmittance = 0;
   double specular_reflectance = 0;
+  double diffuse_transmittance = 0;
+  std::array<double, 3> tint{1, 1, 1};  ///< factors of transmittance and specular reflectance per band
 };
 
 /// A lamp without a polygon.
@@ -73,8 +76,15 @@ struct RandomRoom {
 std::vector<std::string> daylight_kinds();
 std::vector<std::string> lamp_kinds();
 
+/// The surfaces in a room besides those of its kind.
+enum class RoomOptics : std::uint8_t {
+  plain,  ///< none
+  mixed   ///< colored panes, mirrors and sheets that stand in the room, and often tinted windows
+};
+
 /// Room number `number` of a kind. The same arguments give the same room.
-RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed);
+RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed,
+                            RoomOptics optics = RoomOptics::plain);
 
 /// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies. Returns the path of the TOML file.
 std::filesystem::path write_random_room(const RandomRoom& room, const std::filesystem::path& folder);
