@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -246,6 +247,75 @@ std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
   return light.other_side[patch];
 }
 
+namespace {
+
+// The shares of the bands that a specular face leaves, where some face has a color; nothing where all are gray.
+std::optional<PaneSides> coloured_sides(const Scene* scene) {
+  const auto differs = [](const Spectrum& share) { return share.size() > 0 && (share != share[0]).any(); };
+  const auto is_coloured = [&](const Material& material) {
+    return differs(material.transmittance) || differs(material.specular_reflectance);
+  };
+  if (scene == nullptr || std::none_of(scene->materials.begin(), scene->materials.end(), is_coloured)) return {};
+  return PaneSides(*scene);
+}
+
+// The end of a ray that specular faces have sent on, and times which each band counts.
+struct ColouredHit {
+  std::optional<Hit> hit;
+  Spectrum colour;
+};
+
+// One way of a ray at a specular face.
+struct DrawnWay {
+  std::optional<Vector> direction;  // nothing: the face keeps the light
+  Spectrum factor;                  // the share of each band, over the probability of the way
+};
+
+// Draws the way by the mean shares of the bands. A face keeps light of all bands alike, as between patches.
+DrawnWay draw_way(const Occluder& occluder, const PaneSides& sides, const Hit& hit, double drawn) {
+  const auto& [polygon, direction] = std::tie(hit.polygon, hit.direction);
+  const Spectrum none = Spectrum::Zero(sides.bands());
+  const double through = occluder.transmittance(polygon, direction);
+  const double mirrored = occluder.specular_reflectance(polygon, direction);
+  const Spectrum passing = through > 0 ? sides.transmittance(polygon, direction) : none;
+  if (drawn < passing.mean()) return {direction, passing / passing.mean()};
+  const Spectrum reflected = mirrored > 0 ? sides.specular_reflectance(polygon, direction) : none;
+  const double gone = passing.mean() + reflected.mean();
+  if (drawn < gone) return {occluder.mirrored(polygon, direction), reflected / reflected.mean()};
+  return {{}, Spectrum::Constant(sides.bands(), (1 - through - mirrored) / (1 - gone))};
+}
+
+// Follows a ray from its first hit as Occluder::first_held_hits() does, per band.
+ColouredHit follow_colours(const Occluder& occluder, const PaneSides& sides, std::optional<Hit> hit,
+                           std::uint64_t seed) {
+  ColouredHit end{std::move(hit), Spectrum::Ones(sides.bands())};
+  for (std::uint64_t meeting = 0; end.hit && meeting < Occluder::most_meetings; ++meeting) {
+    const Hit before = *end.hit;
+    if (!sides.is_specular(before.polygon)) break;
+    const auto [direction, factor] = draw_way(occluder, sides, before, hash({seed, meeting}) * 0x1p-32);
+    end.colour *= factor;
+    if (!direction) break;
+    const Ray onward{before.point, *direction, before.polygon};
+    end.hit = occluder.first_hits({&onward, 1}).front();
+    if (!end.hit) break;
+    end.hit->distance += before.distance;
+    end.hit->reflections = before.reflections + (*direction == before.direction ? 0 : 1);
+  }
+  return end;
+}
+
+// The ends of rays. Their colors are empty where all faces are gray.
+std::vector<ColouredHit> held_hits(const Occluder& occluder, const std::optional<PaneSides>& sides,
+                                   const std::vector<Ray>& rays, std::uint64_t seed) {
+  std::vector<ColouredHit> ends;
+  for (auto& hit : sides ? occluder.first_hits(rays) : occluder.first_held_hits(rays, seed))
+    ends.push_back(sides ? follow_colours(occluder, *sides, std::move(hit), hash({seed, ends.size()}))
+                         : ColouredHit{std::move(hit), {}});
+  return ends;
+}
+
+}  // namespace
+
 // Where a ray ends on a patch; none where it finds nothing.
 struct GatheredLight::Stop {
   std::optional<PatchIndex> patch;
@@ -253,9 +323,11 @@ struct GatheredLight::Stop {
   double distance = std::numeric_limits<double>::infinity();
   bool is_specular = false;  // a mirror or a clear face, or met by way of one
   double held = 1;           // of the patch's side
+  Spectrum colour = {};      // times which each band counts; empty: 1
 };
 
-GatheredLight::GatheredLight(const SolvedLight& solved) : solved_(solved), lookup_(solved.mesh) {}
+GatheredLight::GatheredLight(const SolvedLight& solved)
+    : solved_(solved), lookup_(solved.mesh), coloured_(coloured_sides(solved.scene)) {}
 
 SkyAim GatheredLight::aim_at(PatchIndex patch) const {
   const PatchMesh& mesh = solved_.mesh;
@@ -281,12 +353,13 @@ LitPoint GatheredLight::lit_point(const PatchPoint& at, std::uint32_t sample, st
 
 std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const {
   const Occluder& occluder = solved_.occluder;
-  const auto hits = occluder.first_held_hits(rays, seed);
+  const std::vector<ColouredHit> ends = held_hits(occluder, coloured_, rays, seed);
   std::vector<Stop> stops(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (!hits[k]) continue;
-    const Hit& hit = *hits[k];
+    if (!ends[k].hit) continue;
+    const Hit& hit = *ends[k].hit;
     Stop& stop = stops[k];
+    stop.colour = ends[k].colour;
     stop.distance = hit.distance;
     stop.point = hit.point;
     stop.patch = lookup_.patch_at(hit.polygon, hit.side, hit.point);
@@ -296,8 +369,16 @@ std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>&
   return stops;
 }
 
-// The radiosity that each ray finds, without exitance.
+// The radiosity that each ray finds, without exitance, in the color in which it arrives.
 Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
+  Field found = leaving(stops, bounces_left, seed);
+  for (std::size_t k = 0; k < stops.size(); ++k)
+    if (stops[k].colour.size() > 0) found.row(static_cast<Eigen::Index>(k)) *= stops[k].colour;
+  return found;
+}
+
+// The radiosity at the end of each ray, without exitance.
+Field GatheredLight::leaving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
   const PatchMesh& mesh = solved_.mesh;
   const auto rows = static_cast<Eigen::Index>(stops.size());
   Field found = Field::Zero(rows, solved_.reflected.cols());

@@ -553,7 +553,7 @@ void print_outliers(const std::vector<PixelComparison>& comparisons) {
   for (const PixelComparison& c : comparisons) {
     const double sensor = (c.sensor - c.path) / std::hypot(c.sensor_error, c.path_error);
     const double pixel = (c.pixel - c.path) / std::hypot(c.pixel_error, c.sensor_error, c.path_error);
-    if (std::abs(sensor) <= 3 && std::abs(pixel) <= 3) continue;
+    if (!(std::abs(sensor) > 3 || std::abs(pixel) > 3) || c.kind == "elsewhere") continue;
     std::printf("  %s  sensor %.5g +- %.2g  pixel %.5g +- %.2g  path %.5g +- %.2g  z %+.1f %+.1f\n", c.place.c_str(),
                 c.sensor, c.sensor_error, c.pixel, c.pixel_error, c.path, c.path_error, sensor, pixel);
   }

@@ -40,7 +40,8 @@ std::optional<SurfacePlace> place_in(const Simulation& simulation, PatchIndex pa
   const auto hit = occluder.first_hits({&ray, 1}).front();
   const double free = hit ? hit->distance : 1;
   if (free < least_gap) return {};
-  return SurfacePlace{{point, mesh.normal[patch]}, patch, free, std::sqrt(mesh.area[patch])};
+  const bool counts = simulation.enclosed.size() == 0 || simulation.enclosed[patch] > 0;
+  return SurfacePlace{{point, mesh.normal[patch]}, patch, free, std::sqrt(mesh.area[patch]), counts};
 }
 
 Camera camera_of(const SurfacePlace& place) {

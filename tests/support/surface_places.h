@@ -17,10 +17,11 @@ struct SurfacePlace {
   Sensor sensor;
   PatchIndex patch = 0;
   double free_distance = 0;  ///< meters
-  double width = 0;          ///< meters, of the square around the place that lies in its patch
+  double width = 0;          ///< meters, of the patch
+  bool counts = true;        ///< false by daylight outside of enclosed spaces, where no accuracy is asked for
 };
 
-/// Places in patches drawn with equal probability. Places behind other polygons of the same plane do not count, nor do
+/// Places in patches drawn with equal probability. Leaves out places behind other polygons of the same plane, and
 /// those that readings exclude as inside walls. Returns fewer if the scene has no more.
 std::vector<SurfacePlace> draw_surface_places(const Simulation& simulation, std::size_t count, std::uint64_t seed);
 
