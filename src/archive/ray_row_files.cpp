@@ -9,10 +9,10 @@
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
 #include "files/sha256.h"
+#include "optics/surface_optics.h"
 #include "output/file/whole_file.h"
 #include "output/mesh/write_mesh.h"
 #include "plan/planned_scene.h"
-#include "optics/surface_optics.h"
 #include "transport/ray_transport.h"
 
 #include <algorithm>

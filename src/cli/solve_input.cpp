@@ -6,9 +6,9 @@
 #include "archive/scene_file.h"
 #include "input/tables/read_tables.h"
 #include "input/text.h"
+#include "optics/surface_optics.h"
 #include "output/file/whole_file.h"
 #include "plan/choose_storage.h"
-#include "optics/surface_optics.h"
 
 #include <cmath>
 #include <sstream>

@@ -217,9 +217,9 @@ constexpr std::array parts_of_reading = {&Reading::mean,   &Reading::variance, &
 // A patch as a sensor sees it, per band.
 struct SeenPatch {
   PatchIndex patch = 0;
-  Spectrum weight;               // irradiance by a radiosity of 1
-  Spectrum square;               // of the weight
-  Spectrum hidden;               // the weight times the share of the patch that is not visible
+  Spectrum weight;                // irradiance by a radiosity of 1
+  Spectrum square;                // of the weight
+  Spectrum hidden;                // the weight times the share of the patch that is not visible
   double squared_unevenness = 0;  // squared_unevenness()
 };
 
@@ -383,7 +383,8 @@ void add_errors(const Gather& gather, const Sensor& sensor, std::span<const Hemi
   errors.add({j, weights.colwise().sum(), product_of_means(weights, weights), hidden, unevenness / sum});
 }
 
-// E = sum over rays of w (B_j + g_j . (y - c_j)) at the points y that paths meet. Bright patches count in mirrors alone.
+// E = sum over rays of w (B_j + g_j . (y - c_j)) at the points y that paths meet. Bright patches count in mirrors
+// alone.
 void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectrum& limit, double times,
                        std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
   const PatchMesh& mesh = gather.light.mesh;
@@ -424,7 +425,8 @@ Reading estimate(const Gather& gather, const Sensor& sensor, const Sources& sour
   for (Spectrum Reading::*const part : parts_of_reading) reading.*part = Spectrum::Zero(limit.size());
   ErrorsOfPatches errors(gather.light, reading);
   add_bright_patches(gather, sensor, sources, limit, times, stage, reading, errors);
-  if (sources.is_rest_lit || gather.light.mirrored != nullptr) add_other_patches(gather, sensor, limit, times, stage, reading, errors);
+  if (sources.is_rest_lit || gather.light.mirrored != nullptr)
+    add_other_patches(gather, sensor, limit, times, stage, reading, errors);
   errors.finish();
   reading.hidden = reading.hidden.max(0);
   return reading;

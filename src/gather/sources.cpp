@@ -32,7 +32,7 @@ double shifted(double u, std::uint32_t shift) {
 // Sums of cosine times solid angle over the rays of one replicate.
 struct Weights {
   Eigen::Vector4d reached = Eigen::Vector4d::Zero();  // and times the way from the patch's centroid
-  double visible = 0;  // of the rays that nothing opaque blocks
+  double visible = 0;                                 // of the rays that nothing opaque blocks
   double all = 0;
   Spectrum by_band = {};  // what is reached in each band, where these differ
 };
@@ -158,10 +158,9 @@ std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint3
            if (!hit) return Continuation::ends;
            const double form_factor = form_factors[path.start];
            if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
-             found.push_back(
-                 {*patch, r, hit->point, path.distance + hit->distance, form_factor,
-                  form_factor * occluder_.relative_held(hit->polygon, hit->direction) * path.throughput,
-                  path.reflections > 0});
+             found.push_back({*patch, r, hit->point, path.distance + hit->distance, form_factor,
+                              form_factor * occluder_.relative_held(hit->polygon, hit->direction) * path.throughput,
+                              path.reflections > 0});
            return Continuation::specular;
          });
   }

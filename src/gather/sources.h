@@ -44,7 +44,7 @@ struct VisibleShare {
   Eigen::Vector4d moments = Eigen::Vector4d::Zero();     ///< the share that arrives, and its first moments about the
                                                          ///< patch's centroid, meters
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of these
-  double visible = 0;    ///< the share that nothing opaque hides
+  double visible = 0;                                    ///< the share that nothing opaque hides
   double rays = 0;
   Spectrum colour = {};  ///< times which each band of the mean arrives; empty: 1
 
@@ -84,8 +84,8 @@ struct HemisphereHit {
   bool is_mirrored = false;  ///< the path has a reflection
 };
 
-/// Rays from sensors over the hemisphere, in most_replicates independent replicates. They are distributed as the cosine,
-/// or by SpecularAim, with twice as many rays. Paths continue through clear faces and mirrors.
+/// Rays from sensors over the hemisphere, in most_replicates independent replicates. They are distributed as the
+/// cosine, or by SpecularAim, with twice as many rays. Paths continue through clear faces and mirrors.
 class HemisphereRays {
  public:
   /// `aim` may be null.

@@ -157,7 +157,7 @@ std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) cons
 
 // 1/sr
 double SpecularAim::aimed_density(std::span<const double> probabilities, const SurfacePoint& at,
-                                 const Vector& direction) const {
+                                  const Vector& direction) const {
   double density = 0;
   for (std::size_t k = 0; k < probabilities.size(); ++k) {
     if (!(probabilities[k] > 0)) continue;

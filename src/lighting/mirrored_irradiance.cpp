@@ -164,11 +164,12 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
       weights.push_back(weight);
     }
   }
-  walk(occluder, *lighting.paths.optics(), std::move(rays), {.seed = key}, [&](const SpecularPath& path, const std::optional<Hit>& hit) {
-    if (!hit && path.reflections > 0)
-      sum += weights[path.start] * path.throughput * radiance(*lighting.sky, path.ray.direction);
-    return Continuation::specular;
-  });
+  walk(occluder, *lighting.paths.optics(), std::move(rays), {.seed = key},
+       [&](const SpecularPath& path, const std::optional<Hit>& hit) {
+         if (!hit && path.reflections > 0)
+           sum += weights[path.start] * path.throughput * radiance(*lighting.sky, path.ray.direction);
+         return Continuation::specular;
+       });
   return (is_point ? static_cast<double>(places.size()) : 1.0) * sum;
 }
 
@@ -200,7 +201,8 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
-    found.light.row(first->replicate) += of_sky({first, last}, receiver.is_point(), hash({key, static_cast<std::uint64_t>(first->replicate)}));
+    found.light.row(first->replicate) +=
+        of_sky({first, last}, receiver.is_point(), hash({key, static_cast<std::uint64_t>(first->replicate)}));
     for (Field* const field : {&found.light, &found.beyond})
       field->row(first->replicate) /= static_cast<double>(last - first);
     first = last;

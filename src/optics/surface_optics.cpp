@@ -90,7 +90,9 @@ double SpecularSurface::reflectance(Side side, double cosine) const {
   return parts_.empty() ? mirrored_[static_cast<std::size_t>(side)] : reflected_by_panes(cosine);
 }
 
-double SpecularSurface::kept(double cosine) const { return held_of(transmittance(cosine) + reflected_by_panes(cosine)); }
+double SpecularSurface::kept(double cosine) const {
+  return held_of(transmittance(cosine) + reflected_by_panes(cosine));
+}
 
 double SpecularSurface::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
 

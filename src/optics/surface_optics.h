@@ -82,7 +82,7 @@ class SpecularSurface {
   double reflected_by_panes(double cosine) const;
 
   Reflections reflections_;
-  double index_ = 0;                         // of clear ones, the mean of both sides
+  double index_ = 0;  // of clear ones, the mean of both sides
   Eigen::Index bands_;
   std::array<std::vector<Pane>, 2> panes_;   // of a clear one, per side and band; empty on an opaque side
   std::array<Spectrum, 2> mirrors_;          // per side; empty where it is no mirror
@@ -148,7 +148,7 @@ class SurfaceOptics {
   static constexpr std::uint32_t not_specular = ~0U;
   Eigen::Index bands_ = 0;
   Reflections reflections_ = Reflections::kept;
-  std::vector<SpecularSurface> faces_;        // each pair of materials once
+  std::vector<SpecularSurface> faces_;     // each pair of materials once
   std::vector<std::uint32_t> of_polygon_;  // none where no polygon is specular, as normals
   std::vector<Vector> normals_;            // of the fronts
 };

@@ -8,8 +8,8 @@
 #include "patchlight/transport/lost_share.h"
 
 #include "lighting/direct_irradiance.h"
-#include "pipeline/run.h"
 #include "optics/surface_optics.h"
+#include "pipeline/run.h"
 
 #include <cstdint>
 #include <span>

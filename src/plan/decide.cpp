@@ -1,12 +1,12 @@
 #include "plan/decide.h"
 
 #include "base/rounded.h"
+#include "light/pane.h"
 #include "light/texture.h"
 #include "plan/survey.h"
 #include "scene/model_face.h"
 #include "scene/solids.h"
 #include "scene/spectral_bands.h"
-#include "light/pane.h"
 #include "visibility/flat_polygon.h"
 
 #include <algorithm>
@@ -128,7 +128,9 @@ EffectFacts with_texture_facts(EffectFacts facts, const Scene& scene, const Kept
 }
 
 // Panes reflect most at grazing angles: without a reflection there, they reflect nothing.
-bool reflects(const Material& clear) { return (specular_reflectance(panes_of(clear.index, clear.transmittance), 0.1) > 0).any(); }
+bool reflects(const Material& clear) {
+  return (specular_reflectance(panes_of(clear.index, clear.transmittance), 0.1) > 0).any();
+}
 
 EffectFacts with_lights(EffectFacts facts, const Scene& scene, const KeptSides& kept) {
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {

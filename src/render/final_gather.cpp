@@ -74,7 +74,8 @@ std::vector<Candidate> seen_in_row(const PictureView& view, int width, int y, in
     if (ray) rays.push_back(*ray);
   }
   std::vector<Candidate> all;
-  for (const SeenPatch& seen : seen_by(view.solved.occluder, view.gather.lookup(), rays, view.spheres)) {
+  for (const SeenPatch& seen : seen_by(view.solved.occluder, *view.solved.lights.lighting.paths.optics(),
+                                       view.gather.lookup(), rays, view.spheres)) {
     if (!seen.patch || !is_plain(view.solved, *seen.patch)) continue;
     const double pixel_width = view.lens.pixel_width(seen.distance);
     all.push_back({{seen.point, *seen.patch}, pixel_width});
@@ -265,9 +266,10 @@ FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
   const auto add = [&](const SeenPatch& seen, PatchIndex patch, const Spectrum& factor) {
     if ((factor > 0).any()) all.points.push_back({samples.of_rays[seen.ray], {seen.point, patch}, factor});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), samples.rays, spheres_)) {
+  for (const SeenPatch& seen :
+       seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), samples.rays, spheres_)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
-    if (seen.outlook) all.brought.outlook[ray] += seen.share;
+    if (seen.outlook) all.brought.outlook[ray] += seen.share.mean();
     if (seen.sphere != nullptr) {
       radiance.row(ray) += seen.share * seen.sphere->radiance;
       continue;
@@ -282,7 +284,7 @@ FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
       continue;
     }
     // L = (E + rho H + t H_behind) / pi
-    const double share = seen.share / std::numbers::pi;
+    const Spectrum share = seen.share / std::numbers::pi;
     radiance.row(ray) += share * solved_.exitance.row(patch);
     add(seen, patch, share * reflectance_at(solved_, patch, seen.point));
     if (const auto other = behind(solved_, patch)) add(seen, *other, share * solved_.transmittance.row(patch));
@@ -354,7 +356,8 @@ void FinalGather::see_layers() {
         at.push_back(index(x, y));
       }
     }
-    for (const SeenPatch& seen : seen_by(solved_.occluder, gather_.lookup(), rays, spheres_)) {
+    for (const SeenPatch& seen :
+         seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), rays, spheres_)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;

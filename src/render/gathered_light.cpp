@@ -5,6 +5,7 @@
 #include "light/texture.h"
 #include "lighting/mirrored_irradiance.h"
 #include "render/camera.h"
+#include "visibility/walk.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,6 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -247,87 +247,17 @@ std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
   return light.other_side[patch];
 }
 
-namespace {
-
-// The shares of the bands that a specular face leaves, where some face has a color; nothing where all are gray.
-std::optional<PaneSides> coloured_sides(const Scene* scene) {
-  const auto differs = [](const Spectrum& share) { return share.size() > 0 && (share != share[0]).any(); };
-  const auto is_coloured = [&](const Material& material) {
-    return differs(material.transmittance) || differs(material.specular_reflectance);
-  };
-  if (scene == nullptr || std::none_of(scene->materials.begin(), scene->materials.end(), is_coloured)) return {};
-  return PaneSides(*scene);
-}
-
-// The end of a ray that specular faces have sent on, and times which each band counts.
-struct ColouredHit {
-  std::optional<Hit> hit;
-  Spectrum colour;
-};
-
-// One way of a ray at a specular face.
-struct DrawnWay {
-  std::optional<Vector> direction;  // nothing: the face keeps the light
-  Spectrum factor;                  // the share of each band, over the probability of the way
-};
-
-// Draws the way by the mean shares of the bands. A face keeps light of all bands alike, as between patches.
-DrawnWay draw_way(const Occluder& occluder, const PaneSides& sides, const Hit& hit, double drawn) {
-  const auto& [polygon, direction] = std::tie(hit.polygon, hit.direction);
-  const Spectrum none = Spectrum::Zero(sides.bands());
-  const double through = occluder.transmittance(polygon, direction);
-  const double mirrored = occluder.specular_reflectance(polygon, direction);
-  const Spectrum passing = through > 0 ? sides.transmittance(polygon, direction) : none;
-  if (drawn < passing.mean()) return {direction, passing / passing.mean()};
-  const Spectrum reflected = mirrored > 0 ? sides.specular_reflectance(polygon, direction) : none;
-  const double gone = passing.mean() + reflected.mean();
-  if (drawn < gone) return {occluder.mirrored(polygon, direction), reflected / reflected.mean()};
-  return {{}, Spectrum::Constant(sides.bands(), (1 - through - mirrored) / (1 - gone))};
-}
-
-// Follows a ray from its first hit as Occluder::first_held_hits() does, per band.
-ColouredHit follow_colours(const Occluder& occluder, const PaneSides& sides, std::optional<Hit> hit,
-                           std::uint64_t seed) {
-  ColouredHit end{std::move(hit), Spectrum::Ones(sides.bands())};
-  for (std::uint64_t meeting = 0; end.hit && meeting < Occluder::most_meetings; ++meeting) {
-    const Hit before = *end.hit;
-    if (!sides.is_specular(before.polygon)) break;
-    const auto [direction, factor] = draw_way(occluder, sides, before, hash({seed, meeting}) * 0x1p-32);
-    end.colour *= factor;
-    if (!direction) break;
-    const Ray onward{before.point, *direction, before.polygon};
-    end.hit = occluder.first_hits({&onward, 1}).front();
-    if (!end.hit) break;
-    end.hit->distance += before.distance;
-    end.hit->reflections = before.reflections + (*direction == before.direction ? 0 : 1);
-  }
-  return end;
-}
-
-// The ends of rays. Their colors are empty where all faces are gray.
-std::vector<ColouredHit> held_hits(const Occluder& occluder, const std::optional<PaneSides>& sides,
-                                   const std::vector<Ray>& rays, std::uint64_t seed) {
-  std::vector<ColouredHit> ends;
-  for (auto& hit : sides ? occluder.first_hits(rays) : occluder.first_held_hits(rays, seed))
-    ends.push_back(sides ? follow_colours(occluder, *sides, std::move(hit), hash({seed, ends.size()}))
-                         : ColouredHit{std::move(hit), {}});
-  return ends;
-}
-
-}  // namespace
-
-// Where a ray ends on a patch; none where it finds nothing.
+// A patch that a ray meets, straight or by way of clear faces and mirrors.
 struct GatheredLight::Stop {
-  std::optional<PatchIndex> patch;
+  std::size_t ray = 0;
+  PatchIndex patch = 0;
   Point point = Point::Zero();
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = 0;       // meters, along the path
   bool is_specular = false;  // a mirror or a clear face, or met by way of one
-  double held = 1;           // of the patch's side
-  Spectrum colour = {};      // times which each band counts; empty: 1
+  Spectrum weight;           // the share of its radiosity that arrives
 };
 
-GatheredLight::GatheredLight(const SolvedLight& solved)
-    : solved_(solved), lookup_(solved.mesh), coloured_(coloured_sides(solved.scene)) {}
+GatheredLight::GatheredLight(const SolvedLight& solved) : solved_(solved), lookup_(solved.mesh) {}
 
 SkyAim GatheredLight::aim_at(PatchIndex patch) const {
   const PatchMesh& mesh = solved_.mesh;
@@ -351,49 +281,46 @@ LitPoint GatheredLight::lit_point(const PatchPoint& at, std::uint32_t sample, st
   return {{at.point, solved_.mesh.normal[at.patch], solved_.mesh.polygon[at.patch]}, sample, seed, aim};
 }
 
-std::vector<GatheredLight::Stop> GatheredLight::stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const {
+std::vector<GatheredLight::Stop> GatheredLight::stops_of(std::vector<Ray> rays, std::uint64_t seed) const {
   const Occluder& occluder = solved_.occluder;
-  const std::vector<ColouredHit> ends = held_hits(occluder, coloured_, rays, seed);
-  std::vector<Stop> stops(rays.size());
-  for (std::size_t k = 0; k < rays.size(); ++k) {
-    if (!ends[k].hit) continue;
-    const Hit& hit = *ends[k].hit;
-    Stop& stop = stops[k];
-    stop.colour = ends[k].colour;
-    stop.distance = hit.distance;
-    stop.point = hit.point;
-    stop.patch = lookup_.patch_at(hit.polygon, hit.side, hit.point);
-    stop.held = occluder.held_share(hit.polygon, hit.side);
-    stop.is_specular = hit.reflections > 0 || occluder.optics().at(hit.polygon) != nullptr;
-  }
+  std::vector<Stop> stops;
+  walk(occluder, *solved_.lights.lighting.paths.optics(), std::move(rays), {.seed = seed},
+       [&](const SpecularPath& path, const std::optional<Hit>& hit) {
+         if (!hit) return Continuation::ends;
+         const bool is_specular = occluder.optics().at(hit->polygon) != nullptr;
+         if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
+           stops.push_back({path.start, *patch, hit->point, path.distance + hit->distance,
+                            is_specular || path.reflections > 0,
+                            path.throughput * occluder.relative_held(hit->polygon, hit->direction)});
+         return Continuation::specular;
+       });
   return stops;
 }
 
-// The radiosity that each ray finds, without exitance, in the color in which it arrives.
-Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
-  Field found = leaving(stops, bounces_left, seed);
+// The radiosities that each ray finds at its stops.
+Field GatheredLight::sums_of_rays(const std::vector<Stop>& stops, const Field& arriving, std::size_t rays) {
+  Field sums = Field::Zero(static_cast<Eigen::Index>(rays), arriving.cols());
   for (std::size_t k = 0; k < stops.size(); ++k)
-    if (stops[k].colour.size() > 0) found.row(static_cast<Eigen::Index>(k)) *= stops[k].colour;
-  return found;
+    sums.row(static_cast<Eigen::Index>(stops[k].ray)) += arriving.row(static_cast<Eigen::Index>(k));
+  return sums;
 }
 
-// The radiosity at the end of each ray, without exitance.
-Field GatheredLight::leaving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
+// The radiosity, without exitance, that arrives from each stop.
+Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
   const PatchMesh& mesh = solved_.mesh;
   const auto rows = static_cast<Eigen::Index>(stops.size());
   Field found = Field::Zero(rows, solved_.reflected.cols());
   std::vector<std::size_t> near;
   for (std::size_t k = 0; k < stops.size(); ++k) {
     const Stop& stop = stops[k];
-    if (!stop.patch) continue;
-    const PatchIndex patch = *stop.patch;
+    const PatchIndex patch = stop.patch;
     const bool is_near = stop.distance * stop.distance < mesh.area[patch];
     const bool goes_on = is_near && bounces_left > 0 && !stop.is_specular && !behind(solved_, patch) &&
                          !solved_.lights.lighting.mirrors && (solved_.exitance.row(patch) == 0).all();
     if (goes_on)
       near.push_back(k);
     else
-      found.row(static_cast<Eigen::Index>(k)) = solved_.reflected.row(patch) / stop.held;
+      found.row(static_cast<Eigen::Index>(k)) = stop.weight * solved_.reflected.row(patch);
   }
   if (near.empty()) return found;
 
@@ -403,19 +330,21 @@ Field GatheredLight::leaving(const std::vector<Stop>& stops, int bounces_left, s
   SkyAims aims;
   for (std::size_t n = 0; n < near.size(); ++n) {
     const Stop& stop = stops[near[n]];
-    const PatchIndex patch = *stop.patch;
+    const PatchIndex patch = stop.patch;
     const auto sample = static_cast<std::uint32_t>(n);
     const auto u = pixel_sample(sample, hash({seed, stream::bounce_directions}));
     rays.push_back({stop.point, cosine_direction(mesh.normal[patch], u[0], u[1]), mesh.polygon[patch]});
     points.push_back(lit_point({stop.point, patch}, sample, hash({seed, stream::lights_of_bounce}), aims));
   }
   const Field direct = light_samples(solved_.lights, points, 2);
-  const Field onward = arriving(stops_of(rays, hash({seed, stream::panes_of_bounce})), bounces_left - 1,
-                                hash({seed, stream::next_bounce}));
+  const std::vector<Stop> next = stops_of(std::move(rays), hash({seed, stream::panes_of_bounce}));
+  const Field onward =
+      sums_of_rays(next, arriving(next, bounces_left - 1, hash({seed, stream::next_bounce})), near.size());
   for (std::size_t n = 0; n < near.size(); ++n) {
     const auto row = static_cast<Eigen::Index>(n);
+    const Stop& stop = stops[near[n]];
     found.row(static_cast<Eigen::Index>(near[n])) =
-        reflectance_at(solved_, *stops[near[n]].patch, stops[near[n]].point) * (direct.row(row) + onward.row(row));
+        stop.weight * reflectance_at(solved_, stop.patch, stop.point) * (direct.row(row) + onward.row(row));
   }
   return found;
 }
@@ -429,10 +358,18 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   std::vector<Ray> rays;
   for (const Vector& direction : hemisphere.directions(seed))
     rays.push_back({at.point, direction, mesh.polygon[at.patch]});
-  const std::vector<Stop> stops = stops_of(rays, hash({seed, stream::panes_of_gather}));
-  std::vector<double> distances;
-  for (const Stop& stop : stops) distances.push_back(stop.distance);
-  const HemisphereIrradiance found = hemisphere.irradiance(arriving(stops, options.most_bounces, seed), distances);
+  const std::size_t count = rays.size();
+  const std::vector<Stop> stops = stops_of(std::move(rays), hash({seed, stream::panes_of_gather}));
+  // The stop that sends most decides how fast the light of a ray changes with the place.
+  std::vector<double> distances(count, std::numeric_limits<double>::infinity());
+  std::vector<double> largest(count, 0);
+  for (const Stop& stop : stops) {
+    if (!(stop.weight.mean() > largest[stop.ray])) continue;
+    largest[stop.ray] = stop.weight.mean();
+    distances[stop.ray] = stop.distance;
+  }
+  const HemisphereIrradiance found =
+      hemisphere.irradiance(sums_of_rays(stops, arriving(stops, options.most_bounces, seed), count), distances);
 
   IrradianceRecord record{at.point, normal, 0, found.irradiance, found.gradient, 0};
   Spectrum variance = found.variance;

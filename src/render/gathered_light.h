@@ -5,7 +5,6 @@
 #include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
 
-#include "lighting/light_paths.h"
 #include "mesh/patch_lookup.h"
 #include "render/light_samples.h"
 #include "visibility/occluder.h"
@@ -180,13 +179,12 @@ class GatheredLight {
   struct Stop;
   /// The rays to the sky that a place of a patch gets.
   SkyAim aim_at(PatchIndex patch) const;
-  std::vector<Stop> stops_of(const std::vector<Ray>& rays, std::uint64_t seed) const;
+  std::vector<Stop> stops_of(std::vector<Ray> rays, std::uint64_t seed) const;
   Field arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const;
-  Field leaving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const;
+  static Field sums_of_rays(const std::vector<Stop>& stops, const Field& arriving, std::size_t rays);
 
   const SolvedLight& solved_;
   PatchLookup lookup_;
-  std::optional<PaneSides> coloured_;  // nothing where all clear faces and mirrors are gray
 };
 
 }  // namespace patchlight

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "visibility/walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +14,6 @@
 
 namespace patchlight {
 namespace {
-
-// Rays under way, with where each has begun, its share, outlook and distance so far.
-struct UnderWay {
-  std::vector<Ray> rays;
-  std::vector<SeenPatch> so_far;
-
-  void add(const Ray& ray, const SeenPatch& from, double share, bool outlook) {
-    rays.push_back(ray);
-    so_far.push_back({.ray = from.ray, .share = share, .outlook = outlook, .distance = from.distance});
-  }
-};
 
 struct MetSphere {
   const SeenSphere* sphere = nullptr;
@@ -43,18 +33,6 @@ MetSphere met_by(const Ray& ray, const std::vector<SeenSphere>& spheres) {
     if (distance > 0 && distance < met.distance) met = {&sphere, distance};
   }
   return met;
-}
-
-// Goes on from a face: through a side without a patch or a clear face, and from a mirror unless the reflection is
-// faint.
-void follow(UnderWay& next, const Occluder& occluder, const Hit& hit, const SeenPatch& seen) {
-  const Ray onward{hit.point, hit.direction, hit.polygon};
-  if (!seen.patch) return next.add(onward, seen, seen.share, seen.outlook);
-  const double through = seen.share * occluder.transmittance(hit.polygon, hit.direction);
-  if (through > 0) next.add(onward, seen, through, true);
-  const double reflected = seen.share * occluder.specular_reflectance(hit.polygon, hit.direction);
-  if (reflected > 0.01)
-    next.add({hit.point, occluder.mirrored(hit.polygon, hit.direction), hit.polygon}, seen, reflected, seen.outlook);
 }
 
 // Patches whose sight lines are traced together.
@@ -158,39 +136,35 @@ std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires) {
   return spheres;
 }
 
-std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
-                               const std::vector<SeenSphere>& spheres) {
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
+                               const std::vector<Ray>& rays, const std::vector<SeenSphere>& spheres) {
   std::vector<SeenPatch> all;
-  UnderWay now;
-  for (std::size_t k = 0; k < rays.size(); ++k) now.add(rays[k], {.ray = k}, 1, false);
-  for (int crossing = 0; crossing <= 64 && !now.rays.empty(); ++crossing) {
-    const std::vector<std::optional<Hit>> hits = occluder.first_hits(now.rays);
-    UnderWay next;
-    for (std::size_t k = 0; k < now.rays.size(); ++k) {
-      const std::optional<Hit>& hit = hits[k];
-      SeenPatch seen = now.so_far[k];
-      seen.direction = now.rays[k].direction;
-      const MetSphere met = met_by(now.rays[k], spheres);
-      if (met.sphere && (!hit || met.distance < hit->distance)) {
-        seen.point = now.rays[k].origin + met.distance * seen.direction;
-        seen.distance += met.distance;
-        seen.sphere = met.sphere;
-      } else if (!hit) {
-        seen.outlook = true;
-        seen.distance = std::numeric_limits<double>::infinity();
-      } else {
-        seen.patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
-        seen.point = hit->point;
-        seen.direction = hit->direction;
-        seen.distance += hit->distance;
-        follow(next, occluder, *hit, seen);
-        if (!seen.patch) continue;
-        seen.share *= occluder.relative_held(hit->polygon, hit->direction);
-      }
-      all.push_back(seen);
-    }
-    now = std::move(next);
-  }
+  walk(occluder, optics, rays, {.least_throughput = 0.01},
+       [&](const SpecularPath& path, const std::optional<Hit>& hit) {
+         SeenPatch seen{.ray = path.start, .direction = path.ray.direction, .share = path.throughput};
+         seen.outlook = path.crossings > 0;
+         const MetSphere met = met_by(path.ray, spheres);
+         if (met.sphere && (!hit || met.distance < hit->distance)) {
+           seen.point = path.ray.origin + met.distance * seen.direction;
+           seen.distance = path.distance + met.distance;
+           seen.sphere = met.sphere;
+           all.push_back(seen);
+           return Continuation::ends;
+         }
+         if (!hit) {
+           seen.outlook = true;
+           seen.distance = std::numeric_limits<double>::infinity();
+           all.push_back(seen);
+           return Continuation::ends;
+         }
+         seen.patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
+         if (!seen.patch) return Continuation::straight;
+         seen.point = hit->point;
+         seen.distance = path.distance + hit->distance;
+         seen.share *= occluder.relative_held(hit->polygon, hit->direction);
+         all.push_back(seen);
+         return Continuation::specular;
+       });
   return all;
 }
 
@@ -226,8 +200,8 @@ std::vector<PixelTile> tiles_of(int width, int height) {
   return tiles;
 }
 
-Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
-             const Vector& up, const RenderOptions& options, const Observer& observer) {
+Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const SurfaceOptics& optics,
+             const Camera& camera, const Vector& up, const RenderOptions& options, const Observer& observer) {
   const Lens lens(camera, up, options.width, options.height);
   const PatchLookup lookup(mesh);
   const double rays_per_pixel = options.rays_per_pixel_edge * options.rays_per_pixel_edge;
@@ -238,10 +212,10 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   const std::vector<PixelTile> tiles = tiles_of(options.width, options.height);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const auto [rays, pixels] = camera_rays(lens, options, tiles[index]);
-    for (const SeenPatch& seen : seen_by(occluder, lookup, rays, options.spheres)) {
+    for (const SeenPatch& seen : seen_by(occluder, optics, lookup, rays, options.spheres)) {
       const Eigen::Index pixel = pixels[seen.ray];
-      const double share = seen.share / rays_per_pixel;
-      if (seen.outlook) image.outlook[pixel] += share;
+      const Spectrum share = seen.share / rays_per_pixel;
+      if (seen.outlook) image.outlook[pixel] += share.mean();
       if (seen.patch)
         image.pixels.row(pixel) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
       else if (seen.sphere != nullptr)

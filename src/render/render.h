@@ -34,7 +34,7 @@ struct SeenPatch {
   std::optional<PatchIndex> patch = {};
   Point point = Point::Zero();  ///< on the patch
   Vector direction = Vector::Zero();
-  double share = 1;                    ///< of its light that gets through the faces before it
+  Spectrum share;                      ///< of its light that arrives, after clear faces and mirrors on the way
   bool outlook = false;                ///< behind a clear face, or nothing is met
   double distance = 0;                 ///< along the way from the ray's origin, meters
   const SeenSphere* sphere = nullptr;  ///< seen in place of a patch
@@ -45,8 +45,8 @@ std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires);
 
 /// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
 /// in it. Rays pass sides without patches and end on spheres.
-std::vector<SeenPatch> seen_by(const Occluder& occluder, const PatchLookup& lookup, const std::vector<Ray>& rays,
-                               const std::vector<SeenSphere>& spheres = {});
+std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
+                               const std::vector<Ray>& rays, const std::vector<SeenSphere>& spheres = {});
 
 /// Patch values as a smooth field, for display and for values at points.
 struct SmoothField {
@@ -85,8 +85,8 @@ struct RenderOptions {
 /// radiance of the patches. Sides without patches are transparent to the camera; where nothing is met the surroundings
 /// are seen. \throws InputError when eye and target are one point or the field of view is not between 0 and 180
 /// degrees; Canceled.
-Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const Camera& camera,
-             const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
+Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder& occluder, const SurfaceOptics& optics,
+             const Camera& camera, const Vector& up, const RenderOptions& options = {}, const Observer& observer = {});
 
 /// The share of the hemisphere, weighted by the cosine, in which nothing opaque lies within a distance in meters: the
 /// mean over each patch, by so many rays. 1 before an open sky, 0 in a closed room smaller than that.

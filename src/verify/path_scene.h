@@ -7,7 +7,6 @@
 
 #include "base/sampling.h"
 #include "light/pane.h"
-#include "light/pane.h"
 #include "visibility/occluder.h"
 
 #include <cstddef>

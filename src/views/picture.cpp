@@ -177,7 +177,8 @@ Picture take_picture(const Simulation& simulation, const PictureOptions& options
                                  .height = options.height,
                                  .surroundings = surroundings,
                                  .spheres = spheres_of(seen.luminaires)};
-    taken.image = render(simulation.mesh, radiance, occluder, camera, up, fineness, observer);
+    const SurfaceOptics& optics = *simulation.world->sensor_lighting().paths.optics();
+    taken.image = render(simulation.mesh, radiance, occluder, optics, camera, up, fineness, observer);
   }
   return shown(std::move(taken), camera, options.colors, bands_of(scene));
 }

@@ -3,8 +3,8 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/scene/scene.h"
 
-#include "scene/coverings.h"
 #include "optics/surface_optics.h"
+#include "scene/coverings.h"
 #include "visibility/shaft.h"
 
 #include <array>

@@ -77,9 +77,9 @@ inline void add_specular(std::vector<SpecularPath>& paths, const SpecularPath& p
 
 }  // namespace walk_detail
 
-/// Follows rays through the clear faces and mirrors that `optics` has, and calls `visit(path, hit)` wherever a path meets a polygon, or
-/// leaves the scene without a hit. `visit` returns the Continuation. A path has at most Occluder::most_meetings hits.
-/// O(hits).
+/// Follows rays through the clear faces and mirrors that `optics` has, and calls `visit(path, hit)` wherever a path
+/// meets a polygon, or leaves the scene without a hit. `visit` returns the Continuation. A path has at most
+/// Occluder::most_meetings hits. O(hits).
 template <typename Visit>
 void walk(const Occluder& occluder, const SurfaceOptics& optics, std::vector<Ray> rays, const WalkOptions& options,
           const Visit& visit) {

@@ -84,10 +84,10 @@ std::vector<PixelComparison> compare_pixels(const test::RandomRoom& room, const 
   std::vector<PixelComparison> all;
   for (Eigen::Index k = 0; k < readings.irradiance.rows(); ++k)
     for (Eigen::Index band = 0; band < readings.irradiance.cols(); ++band)
-      all.push_back({room.name, chosen[static_cast<std::size_t>(k)].counts ? room.kind : "elsewhere", text_of(chosen[static_cast<std::size_t>(k)], band),
-                     readings.irradiance(k, band), readings.standard_error(k, band), readings.errors.rays(k, band),
-                     pixels.irradiance(k, band), pixels.standard_error(k, band), traced.irradiance(k, band),
-                     traced.standard_error(k, band)});
+      all.push_back({room.name, chosen[static_cast<std::size_t>(k)].counts ? room.kind : "elsewhere",
+                     text_of(chosen[static_cast<std::size_t>(k)], band), readings.irradiance(k, band),
+                     readings.standard_error(k, band), readings.errors.rays(k, band), pixels.irradiance(k, band),
+                     pixels.standard_error(k, band), traced.irradiance(k, band), traced.standard_error(k, band)});
   return all;
 }
 
@@ -98,8 +98,8 @@ std::string table_of(const std::vector<PixelComparison>& comparisons) {
   const std::vector<std::string> daylight = test::daylight_kinds(), lamps = test::lamp_kinds();
   for (const auto& kinds : {daylight, lamps})
     for (const std::string& kind : kinds) table += rows_of(kind, comparisons, {kind});
-  return table + rows_of("elsewhere", comparisons, {"elsewhere"}) +
-         rows_of("**daylight**", comparisons, daylight) + rows_of("**lamps**", comparisons, lamps);
+  return table + rows_of("elsewhere", comparisons, {"elsewhere"}) + rows_of("**daylight**", comparisons, daylight) +
+         rows_of("**lamps**", comparisons, lamps);
 }
 
 }  // namespace patchlight

@@ -14,8 +14,8 @@ namespace patchlight {
 /// Three computations of the irradiance at a place of a surface, in one band, W/m^2.
 struct PixelComparison {
   std::string room;
-  std::string kind;   ///< "elsewhere" for places outside of enclosed spaces by daylight
-  std::string place;  ///< position, normal and band, for messages
+  std::string kind;                     ///< "elsewhere" for places outside of enclosed spaces by daylight
+  std::string place;                    ///< position, normal and band, for messages
   double sensor = 0, sensor_error = 0;  ///< the error is the total
   double sensor_rays = 0;               ///< the part of the error by its own rays
   double pixel = 0, pixel_error = 0;    ///< the error is the scatter of the pixels alone

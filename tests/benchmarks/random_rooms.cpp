@@ -11,7 +11,6 @@
 //   --references FOLDER       keeps results of path tracing, so that later runs need not repeat it
 //   --write FOLDER            writes the rooms in which a sensor or the total is outside its error bar
 //   --markdown FILE           writes the table as a page
-#include "random_room_pixels.h"
 #include "support/random_rooms.h"
 
 #include "patchlight/simulate.h"
@@ -26,6 +25,7 @@
 #include "output/file/whole_file.h"
 #include "pipeline/radiosity_errors.h"
 #include "pipeline/world.h"
+#include "random_room_pixels.h"
 #include "verify/path_tracer.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 #include "patchlight/plan/plan.h"
 #include "patchlight/simulate.h"
 
-#include "pipeline/form_factors.h"
 #include "optics/surface_optics.h"
+#include "pipeline/form_factors.h"
 #include "support/scenes.h"
 #include "transport/ray_transport.h"
 

@@ -2,8 +2,8 @@
 #include "patchlight/simulate.h"
 
 #include "mesh/mesher.h"
-#include "render/render.h"
 #include "optics/surface_optics.h"
+#include "render/render.h"
 #include "support/scenes.h"
 #include "verify/path_tracer.h"
 #include "visibility/occluder.h"
@@ -256,7 +256,7 @@ TEST_P(PaneInAPicture, ShowsItsOwnLightAndWhatIsBehind) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.polygon[i] == 0 ? 5 : 2;
   const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
   const double cosine = GetParam();
-  const Image image = render(mesh, smooth(mesh, radiosity, area, occluder), occluder,
+  const Image image = render(mesh, smooth(mesh, radiosity, area, occluder), occluder, occluder.optics(),
                              {Point(0, 0, 0), Point(cosine, std::sqrt(1 - cosine * cosine), 0), 0.1}, Vector::UnitZ(),
                              {.width = 4, .height = 4});
   const double T = transmittance(pane_of(1.52, 0.6), cosine);

@@ -63,8 +63,7 @@ void expect_agreement(const std::string& kind, std::size_t number) {
   EXPECT_LE(largest_z(readings.irradiance - paths.irradiance, readings.standard_error, paths.standard_error),
             most_errors)
       << room.name;
-  EXPECT_LE(largest_z(pixels.irradiance - paths.irradiance, of_pixels, paths.standard_error), most_errors)
-      << room.name;
+  EXPECT_LE(largest_z(pixels.irradiance - paths.irradiance, of_pixels, paths.standard_error), most_errors) << room.name;
   EXPECT_LE(largest_z(pixels.irradiance - readings.irradiance, pixels.standard_error, readings.standard_error),
             most_errors)
       << room.name;

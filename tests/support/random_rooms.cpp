@@ -501,8 +501,8 @@ void add_lamp_parts(Draft& draft) {
   if (kind == "furnished" || dice.chance(0.2)) add_furniture(draft);
 }
 
-// An upright rectangle, turned about its center, that stands below the lamps: the first of twenty that is clear of other
-// bodies. Without such a place there is none.
+// An upright rectangle, turned about its center, that stands below the lamps: the first of twenty that is clear of
+// other bodies. Without such a place there is none.
 void add_upright(Draft& draft, const RoomMaterial& material) {
   Dice& dice = draft.dice;
   const Vector& size = draft.room.size;
@@ -510,9 +510,9 @@ void add_upright(Draft& draft, const RoomMaterial& material) {
     const double w = dice.between(0.4, 1.2), bottom = dice.between(0.02, 0.4);
     const Point centre(dice.between(0.65, size.x() - 0.65), dice.between(0.65, size.y() - 0.65), bottom);
     const Vector height = dice.between(0.5, size.z() - 0.9 - bottom) * Vector::UnitZ();
-    const Faces faces = turn_about({make_face(material.name, material.name, centre - w / 2 * Vector::UnitX(),
-                                              w * Vector::UnitX(), height)},
-                                   centre, dice.between(-180, 180));
+    const Faces faces = turn_about(
+        {make_face(material.name, material.name, centre - w / 2 * Vector::UnitX(), w * Vector::UnitX(), height)},
+        centre, dice.between(-180, 180));
     if (!fits(draft, faces)) continue;
     draft.add_body(faces);
     draft.room.materials.push_back(material);

@@ -93,9 +93,9 @@ std::vector<SurfacePlace> draw_surface_places(const Simulation& simulation, std:
 
 PlaceIrradiance picture_irradiance(const Simulation& simulation, std::span<const SurfacePlace> places,
                                    std::uint32_t seeds) {
-  const Pictures pictures{simulation, solved_light(simulation),
-                          smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area,
-                                 simulation.world->all_faces())};
+  const Pictures pictures{
+      simulation, solved_light(simulation),
+      smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, simulation.world->all_faces())};
   const auto rows = static_cast<Eigen::Index>(places.size());
   PlaceIrradiance found{Field(rows, simulation.problem.exitance.cols()), {}};
   found.standard_error = found.irradiance;

@@ -1,7 +1,7 @@
 // Partly covered surfaces: alpha of textures in glTF, map_d in OBJ.
 #include "input/picture_colours.h"
-#include "model_files.h"
 #include "light/pane.h"
+#include "model_files.h"
 
 #include <cstring>
 #include <gtest/gtest.h>

@@ -27,7 +27,8 @@ Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& ca
                  const Vector& up = Vector::UnitZ()) {
   const PatchMesh mesh = front_patches(scene);
   const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
-  return render(mesh, smooth(mesh, radiance, area, Occluder(scene)), Occluder(scene), camera, up, options);
+  const Occluder occluder(scene);
+  return render(mesh, smooth(mesh, radiance, area, occluder), occluder, occluder.optics(), camera, up, options);
 }
 
 // The area in pixels of a quadrilateral's image under y-axis perspective, by the shoelace formula.
@@ -167,8 +168,9 @@ TEST(Render, CanBeCancelled) {
     EXPECT_EQ(progress.stage, Stage::render);
     return false;
   };
-  EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, 1, 1), CornerWeights::Ones(1, 4)}, Occluder(scene),
-                      camera_along_y(50), Vector::UnitZ(), {}, stop),
+  const Occluder occluder(scene);
+  EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, 1, 1), CornerWeights::Ones(1, 4)}, occluder,
+                      occluder.optics(), camera_along_y(50), Vector::UnitZ(), {}, stop),
                Canceled);
 }
 
