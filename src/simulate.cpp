@@ -24,7 +24,7 @@ Simulation finished(Simulation simulation, const StageClock& clock) {
   const Scene& scene = simulation.world->planned_scene();
   simulation.spaces = errors_by_space(scene, simulation);
   simulation.costs = clock.costs();
-  return of_whole_patches(std::move(simulation), scene);
+  return to_geometric_area(std::move(simulation), scene);
 }
 
 // One mesh: form factors, light, solution and how far that may be off.

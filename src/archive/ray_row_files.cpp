@@ -39,7 +39,7 @@ std::string bytes_of_faces(const Scene& scene) {
   const SurfaceOptics specular(scene, Reflections::followed);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const Vector normal = front_normal(scene, p);
-    for (const Side side : {Side::front, Side::back}) append_bytes(bytes, specular.held(p, side));
+    for (const Side side : {Side::front, Side::back}) append_bytes(bytes, specular.nonspecular_fraction(p, side));
     append_bytes(bytes, specular.transmittance(p, normal));
     for (const Vector& direction : {normal, Vector(-normal)}) append_bytes(bytes, specular.reflectance(p, direction));
     append_bytes(bytes, scene.polygons[p].corners.size());
@@ -274,7 +274,7 @@ std::map<std::string, std::string> meaning_of_stop_files() {
   const std::array<const char*, 5> meaning = {
       "where the stops of each row begin; one more at the end",
       "the patch that is met at a stop; -1: the ray has left the model, -2: it meets a side without patches",
-      "what the ray counts at a stop if nothing was lost before and all is held there; unit 1",
+      "form factor of the ray at a stop, without losses before it and without specular light there; unit 1",
       "the clear face or mirror of a stop, or from which the ray starts; -1: none",
       "step of a stop + 8 if at a back + 16 times the cosine of the angle there in units of 2^-28; step 0: sent, 1: "
       "crossed, 2: through, 3: mirrored, 4: kept, 5: ends"};

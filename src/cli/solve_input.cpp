@@ -41,22 +41,23 @@ void require_room_for(const std::filesystem::path& folder, const FormFactorInfo&
 }
 
 // Fractions of light that the front (0) and the back (1) of each polygon do not pass on specularly.
-using HeldShares = std::vector<std::array<double, 2>>;
+using NonspecularFractions = std::vector<std::array<double, 2>>;
 
-HeldShares held_shares(const Scene& scene, Reflections reflections) {
+NonspecularFractions nonspecular_fractions(const Scene& scene, Reflections reflections) {
   const SurfaceOptics specular(scene, reflections);
-  HeldShares held;
+  NonspecularFractions nonspecular;
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p)
-    held.push_back({specular.held(p, Side::front), specular.held(p, Side::back)});
-  return held;
+    nonspecular.push_back(
+        {specular.nonspecular_fraction(p, Side::front), specular.nonspecular_fraction(p, Side::back)});
+  return nonspecular;
 }
 
 // Stored form factors and patch areas depend on the specular reflectance and transmittance of panes and mirrors.
 void require_same_panes(const std::filesystem::path& folder, const StoredShares& stored, const PatchMesh& mesh,
-                        const HeldShares& held) {
+                        const NonspecularFractions& nonspecular) {
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     const double then = stored.area[i] / mesh.area[i];
-    const double now = held[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
+    const double now = nonspecular[mesh.polygon[i]][static_cast<std::size_t>(mesh.side[i])];
     if (stored.lost.covered[i] > 0 || std::abs(then - now) <= 1e-5 * now /* single precision */) continue;
     std::ostringstream text;
     text << "these form factors have a face that passes the fraction " << 1 - then
@@ -126,9 +127,10 @@ SolveInput read_input(const SolveArguments& arguments) {
     input.ray_exchange = [folder, info](const PatchMesh& mesh) { return read_ray_rows(folder, info, mesh); };
     return input;
   }
-  input.exchange = [folder, info, held = held_shares(input.scene, Reflections::kept)](const PatchMesh& mesh) {
+  input.exchange = [folder, info,
+                    nonspecular = nonspecular_fractions(input.scene, Reflections::kept)](const PatchMesh& mesh) {
     Exchange exchange = read_exchange(folder, info, mesh);
-    require_same_panes(folder, {exchange.area, exchange.lost}, mesh, held);
+    require_same_panes(folder, {exchange.area, exchange.lost}, mesh, nonspecular);
     return exchange;
   };
   return input;

@@ -158,9 +158,10 @@ std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint3
            if (!hit) return Continuation::ends;
            const double form_factor = form_factors[path.start];
            if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
-             found.push_back({*patch, r, hit->point, path.distance + hit->distance, form_factor,
-                              form_factor * occluder_.relative_held(hit->polygon, hit->direction) * path.throughput,
-                              path.reflections > 0});
+             found.push_back(
+                 {*patch, r, hit->point, path.distance + hit->distance, form_factor,
+                  form_factor * occluder_.nonspecular_profile(hit->polygon, hit->direction) * path.throughput,
+                  path.reflections > 0});
            return Continuation::specular;
          });
   }
@@ -221,7 +222,7 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
         replicates[r].reached += reached * Eigen::Vector4d(1, way.x(), way.y(), way.z());
         if (by_band.size() == 0 || !(reached > 0)) continue;
         const Segment& segment = segments[ray];
-        const double sent = occluder_.relative_held(segment.to_polygon, (segment.to - segment.from).normalized());
+        const double sent = occluder_.nonspecular_profile(segment.to_polygon, (segment.to - segment.from).normalized());
         replicates[r].by_band += weights[ray] * sent * by_band.row(static_cast<Eigen::Index>(ray));
       }
     }

@@ -86,21 +86,21 @@ Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
   return share;
 }
 
-double held_of(double specular) { return std::max(1e-6, 1 - specular); }
+double nonspecular_rest(double specular) { return std::max(1e-6, 1 - specular); }
 
 double cosine_of_step(std::size_t step) { return (static_cast<double>(step) + 0.5) / cosine_steps; }
 
 // The irradiance up to a cosine is its square.
 double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / cosine_steps; }
 
-Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on) {
-  Spectrum held = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
+Spectrum hemispherical_nonspecular(const std::vector<Pane>& panes, bool reflections_go_on) {
+  Spectrum nonspecular = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
   for (std::size_t k = 0; k < cosine_steps; ++k) {
     Spectrum onward = transmittance(panes, cosine_of_step(k));
     if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
-    held += irradiance_of_step(k) * onward.unaryExpr(&held_of);
+    nonspecular += irradiance_of_step(k) * onward.unaryExpr(&nonspecular_rest);
   }
-  return held;
+  return nonspecular;
 }
 
 double hemispherical_reflectance(const Pane& pane) {

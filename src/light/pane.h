@@ -36,7 +36,7 @@ Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
 Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
 
 /// The fraction of light that is absorbed or scattered, where this fraction goes on specularly: at least 1e-6.
-double held_of(double specular);
+double nonspecular_rest(double specular);
 
 /// Midpoint rule for the mean over the hemisphere, weighted by the cosine. This number of steps gives the fraction that
 /// ordinary glass absorbs within 2e-6.
@@ -50,7 +50,7 @@ double irradiance_of_step(std::size_t step);
 
 /// The mean over the hemisphere of the fraction that panes absorb or scatter, per band, weighted by the cosine.
 /// Reflections count as absorbed unless they go on.
-Spectrum hemispherical_held(const std::vector<Pane>& panes, bool reflections_go_on = false);
+Spectrum hemispherical_nonspecular(const std::vector<Pane>& panes, bool reflections_go_on = false);
 
 /// The same mean of the specular reflectance of one pane.
 double hemispherical_reflectance(const Pane& pane);

@@ -41,9 +41,9 @@ SpecularSurface::SpecularSurface(const Scene& scene, PolygonIndex polygon, Refle
     is_mirror_[s] = is_mirror(scene, polygon, side) ? 1 : 0;
     for (Eigen::Index band = 0; band < material.specular_reflectance.size(); ++band)
       mirrored_[s] += shares[band] * material.specular_reflectance[band];
-    held_[s] = held_of(mirrored_[s]);
+    nonspecular_[s] = nonspecular_rest(mirrored_[s]);
   }
-  if (is_clear) keep_what_panes_hold();
+  if (is_clear) tabulate_nonspecular();
 }
 
 Spectrum SpecularSurface::spectral_transmittance(Side side, double cosine) const {
@@ -65,12 +65,12 @@ bool SpecularSurface::is_coloured() const {
                      [](const Spectrum& mirror) { return mirror.size() > 0 && (mirror != mirror[0]).any(); });
 }
 
-void SpecularSurface::keep_what_panes_hold() {
-  held_upto_.push_back(0);
+void SpecularSurface::tabulate_nonspecular() {
+  nonspecular_upto_.push_back(0);
   for (std::size_t k = 0; k < cosine_steps; ++k)
-    held_upto_.push_back(held_upto_.back() + irradiance_of_step(k) * kept(cosine_of_step(k)));
-  held_.fill(held_upto_.back());
-  for (double& upto : held_upto_) upto /= held_[0];
+    nonspecular_upto_.push_back(nonspecular_upto_.back() + irradiance_of_step(k) * kept(cosine_of_step(k)));
+  nonspecular_.fill(nonspecular_upto_.back());
+  for (double& upto : nonspecular_upto_) upto /= nonspecular_[0];
 }
 
 double SpecularSurface::transmittance(double cosine) const {
@@ -91,19 +91,19 @@ double SpecularSurface::reflectance(Side side, double cosine) const {
 }
 
 double SpecularSurface::kept(double cosine) const {
-  return held_of(transmittance(cosine) + reflected_by_panes(cosine));
+  return nonspecular_rest(transmittance(cosine) + reflected_by_panes(cosine));
 }
 
-double SpecularSurface::held(Side side) const { return held_[static_cast<std::size_t>(side)]; }
+double SpecularSurface::nonspecular_fraction(Side side) const { return nonspecular_[static_cast<std::size_t>(side)]; }
 
 SpecularShares SpecularSurface::shares(Side side, double cosine) const {
   if (parts_.empty()) {
     const auto s = static_cast<std::size_t>(side);
-    return {0, mirrored_[s], held_[s], 1};
+    return {0, mirrored_[s], nonspecular_[s], 1};
   }
   SpecularShares shares{transmittance(cosine), reflected_by_panes(cosine), 0, 0};
-  shares.held = held_of(shares.transmitted + shares.mirrored);
-  shares.relative_held = shares.held / held_[0];
+  shares.nonspecular = nonspecular_rest(shares.transmitted + shares.mirrored);
+  shares.nonspecular_profile = shares.nonspecular / nonspecular_[0];
   return shares;
 }
 
@@ -118,14 +118,16 @@ double SpecularSurface::kind(Side side) const {
 }
 
 // A mirror keeps the same share at all angles.
-double SpecularSurface::relative_held(double cosine) const { return parts_.empty() ? 1 : kept(cosine) / held_[0]; }
+double SpecularSurface::nonspecular_profile(double cosine) const {
+  return parts_.empty() ? 1 : kept(cosine) / nonspecular_[0];
+}
 
 // Within a step the density is taken as even.
-double SpecularSurface::held_cosine(double u) const {
+double SpecularSurface::sample_nonspecular_cosine(double u) const {
   if (parts_.empty()) return std::sqrt(u);
-  const auto next = std::upper_bound(held_upto_.begin() + 1, held_upto_.end() - 1, u);
+  const auto next = std::upper_bound(nonspecular_upto_.begin() + 1, nonspecular_upto_.end() - 1, u);
   const double before = *(next - 1);
-  const auto step = static_cast<double>(next - held_upto_.begin() - 1);
+  const auto step = static_cast<double>(next - nonspecular_upto_.begin() - 1);
   return std::clamp((step + (u - before) / (*next - before)) / cosine_steps, 0.0, 1.0);
 }
 
@@ -201,20 +203,20 @@ Vector SurfaceOptics::mirrored(PolygonIndex polygon, const Vector& direction) co
   return direction - 2 * normal.dot(direction) * normal;
 }
 
-double SurfaceOptics::held(PolygonIndex polygon, Side side) const {
+double SurfaceOptics::nonspecular_fraction(PolygonIndex polygon, Side side) const {
   const SpecularSurface* const face = at(polygon);
-  return face ? face->held(side) : 1;
+  return face ? face->nonspecular_fraction(side) : 1;
 }
 
-double SurfaceOptics::relative_held(PolygonIndex polygon, const Vector& direction) const {
+double SurfaceOptics::nonspecular_profile(PolygonIndex polygon, const Vector& direction) const {
   const SpecularSurface* const face = at(polygon);
-  return face ? face->relative_held(cosine_between(normals_[polygon], direction)) : 1;
+  return face ? face->nonspecular_profile(cosine_between(normals_[polygon], direction)) : 1;
 }
 
-Vector SurfaceOptics::held_direction(PolygonIndex polygon, double u, double v) const {
+Vector SurfaceOptics::sample_nonspecular_direction(PolygonIndex polygon, double u, double v) const {
   const SpecularSurface* const face = at(polygon);
   if (!face) return square_to_cosine_hemisphere(u, v);
-  const double cosine = face->held_cosine(u);
+  const double cosine = face->sample_nonspecular_cosine(u);
   const double sine = std::sqrt(1 - cosine * cosine);
   const double angle = 2 * std::numbers::pi * v;
   return {sine * std::cos(angle), sine * std::sin(angle), cosine};

@@ -125,8 +125,8 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
   const Spectrum shares = luminous_shares(bands);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     add_effects(all, parts[k]);
-    // Whole patches have the same area in all colors; their held parts have not.
-    const Simulation part = of_whole_patches(std::move(parts[k].simulation), colours[k].world->planned_scene());
+    // The geometric area of a patch is the same in all colors. The effective area is not.
+    const Simulation part = to_geometric_area(std::move(parts[k].simulation), colours[k].world->planned_scene());
     const IntoBands columns{colours[k].bands, static_cast<Eigen::Index>(bands.size())};
     const double weight = shares(colours[k].bands).sum();
     put_problem(into.problem, part.problem, columns);
@@ -144,7 +144,7 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
     into.plan.solver.relative_error = k == 0 ? tolerance : std::min(tolerance, *into.plan.solver.relative_error);
   }
   into.transport.lost.clear = clear_shares(into.mesh, run.world->between_patches());
-  all.simulation = of_held_parts(std::move(all.simulation), run.scene);
+  all.simulation = to_effective_area(std::move(all.simulation), run.scene);
   return all;
 }
 

@@ -32,8 +32,8 @@ Simulation of_other_parts(Simulation simulation, const Scene& scene, bool whole)
   RadiosityProblem& problem = simulation.problem;
   Solution& solution = simulation.solution;
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
-    const double held = specular.held(mesh.polygon[i], mesh.side[i]);
-    const double factor = whole ? held : 1 / held;
+    const double nonspecular = specular.nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
+    const double factor = whole ? nonspecular : 1 / nonspecular;
     if (factor == 1) continue;
     problem.area[i] /= factor;
     for (Field* field : {&problem.scattering.reflectance, &problem.exitance, &solution.radiosity, &solution.error})
@@ -120,9 +120,9 @@ RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eig
     const Material& material = scene.materials[mesh.material[i]];
     const bool is_a_front = mesh.side[i] == Side::front || scene.polygons[mesh.polygon[i]].back_material.has_value();
     if (is_a_front || emit_from_back) problem.exitance.row(i) = material.exitance;
-    const double held = specular.held(mesh.polygon[i], mesh.side[i]);
-    problem.scattering.reflectance.row(i) = (problem.scattering.reflectance.row(i) / held).min(1.0);
-    problem.exitance.row(i) /= held;
+    const double nonspecular = specular.nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
+    problem.scattering.reflectance.row(i) = (problem.scattering.reflectance.row(i) / nonspecular).min(1.0);
+    problem.exitance.row(i) /= nonspecular;
   }
   problem.scattering = with_sheets(std::move(problem.scattering), scene, mesh, exposed_area);
   return problem;
@@ -142,11 +142,11 @@ Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMes
   return scattering;
 }
 
-Simulation of_whole_patches(Simulation simulation, const Scene& scene) {
+Simulation to_geometric_area(Simulation simulation, const Scene& scene) {
   return of_other_parts(std::move(simulation), scene, true);
 }
 
-Simulation of_held_parts(Simulation simulation, const Scene& scene) {
+Simulation to_effective_area(Simulation simulation, const Scene& scene) {
   return of_other_parts(std::move(simulation), scene, false);
 }
 

@@ -22,8 +22,9 @@ Field with_textures(Field reflectance, const Scene& scene, const PatchMesh& mesh
 
 /// The radiosity problem of a mesh from the scene's materials. Lamps emit from their front sides, and from their back
 /// sides if `emit_from_back`. A back side with its own material counts as a front side. A clear patch or a mirror
-/// counts as a sheet with holes: the share SurfaceOptics::held() reflects and emits everything, and `exposed_area` is
-/// the area of this share. docs/theory/panes-mirrors-sheets.md. For translucent sheets see with_sheets().
+/// counts as a sheet with holes: the share SurfaceOptics::nonspecular_fraction() reflects and emits everything, and
+/// `exposed_area` is the area of this share. docs/theory/panes-mirrors-sheets.md. For translucent sheets see
+/// with_sheets().
 RadiosityProblem problem_of(const Scene& scene, const PatchMesh& mesh, const Eigen::VectorXd& exposed_area,
                             bool emit_from_back, Reflections reflections = Reflections::kept);
 
@@ -34,10 +35,10 @@ Scattering with_sheets(Scattering scattering, const Scene& scene, const PatchMes
                        const Eigen::VectorXd& exposed_area);
 
 /// Converts area, reflectance, exitance and radiosity of a simulation to whole patches, holes included.
-Simulation of_whole_patches(Simulation simulation, const Scene& scene);
+Simulation to_geometric_area(Simulation simulation, const Scene& scene);
 
 /// And back: as problem_of() has them.
-Simulation of_held_parts(Simulation simulation, const Scene& scene);
+Simulation to_effective_area(Simulation simulation, const Scene& scene);
 
 /// The problem on a mesh: its materials, and the direct light of luminaires, sun and sky.
 struct LitProblem {

@@ -161,7 +161,7 @@ std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& op
          if (!seen.patch) return Continuation::straight;
          seen.point = hit->point;
          seen.distance = path.distance + hit->distance;
-         seen.share *= occluder.relative_held(hit->polygon, hit->direction);
+         seen.share *= occluder.nonspecular_profile(hit->polygon, hit->direction);
          all.push_back(seen);
          return Continuation::specular;
        });

@@ -157,15 +157,15 @@ bool may_be_far(const Scene& scene, const std::vector<double>& areas, double cap
   constexpr int parts = far_away / 2;
   int axis = 0;
   const double length = all.sizes().maxCoeff(&axis);
-  std::array<double, parts + 1> held{};
+  std::array<double, parts + 1> weights{};
   double total = 0;
   for_weighted_corners(scene, areas, cap, [&](const Point& corner, double weight) {
     const double along = parts * ((corner[axis] - all.min()[axis]) / length);
-    held[static_cast<std::size_t>(along)] += weight;
+    weights[static_cast<std::size_t>(along)] += weight;
     total += weight;
   });
   for (std::size_t k = 0; k < parts; ++k) {
-    if (held[k] + held[k + 1] >= main_share * total) return true;
+    if (weights[k] + weights[k + 1] >= main_share * total) return true;
   }
   return false;
 }

@@ -122,8 +122,8 @@ LampPlaces places_of(const LampShape& lamp, const Solid& solid, double near) {
   if (!with_margin(solid.box, near).intersects(lamp.box)) return {.inside = false, .outside = true};
   if (comes_near(lamp.middle, solid, lamp.radius + near) || passes_through(lamp, solid, near))
     return {.inside = true, .outside = true};
-  const bool held = holds(solid, lamp.middle);
-  return {.inside = held, .outside = !held};
+  const bool is_inside = holds(solid, lamp.middle);
+  return {.inside = is_inside, .outside = !is_inside};
 }
 
 }  // namespace

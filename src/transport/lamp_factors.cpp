@@ -15,13 +15,13 @@
 namespace patchlight {
 namespace {
 
-// One of them.
+// A triangle or convex quadrilateral of a lamp.
 struct LampPiece {
   PatchShape shape;
   SampledPatch sampled;
-  double held = 1;        // the share of the light that arrives there which it holds back
-  std::uint32_t key = 0;  // chooses random points
-  std::size_t lamp = 0;   // which of the lamps it belongs to
+  double nonspecular = 1;  // the share of arriving light that is neither transmitted nor mirrored
+  std::uint32_t key = 0;   // chooses random points
+  std::size_t lamp = 0;    // which of the lamps it belongs to
 };
 
 PatchCorners turned(PatchCorners corners) {
@@ -66,8 +66,8 @@ std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, co
     for (const PatchCorners& corners : pieces_of(scene, lamps[lamp])) {
       const PatchShape shape = patch_shape(corners);
       key = hash(key);
-      pieces.push_back(
-          {shape, sampled_patch(shape, polygon, occluder.frame()), occluder.held_share(polygon, side), key, lamp});
+      pieces.push_back({shape, sampled_patch(shape, polygon, occluder.frame()),
+                        occluder.nonspecular_fraction(polygon, side), key, lamp});
     }
   }
   return pieces;
@@ -187,7 +187,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   if (orientation(patch, piece.shape) == Orientation::averted) return {};
   LampPair pair;
   if (!can_occlude) {
-    pair.unoccluded = piece.held * unoccluded(patch, piece);
+    pair.unoccluded = piece.nonspecular * unoccluded(patch, piece);
     pair.form_factor = {pair.unoccluded, pair.unoccluded};
     pair.bin = {Pool::bins - 1, Pool::bins - 1};
     return pair;
@@ -205,11 +205,12 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   shadow_rays += rays[0].all + rays[1].all;
 
   // 2. The form factor without occluders is not worth its time where nothing is seen.
-  if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.held * unoccluded(patch, piece);
-  // Clear ones may hold all light at an angle.
-  const double most = pair.unoccluded / (piece.held * occluder.held_share(mesh.polygon[i], mesh.side[i]));
+  if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.nonspecular * unoccluded(patch, piece);
+  // A clear patch may scatter or absorb all light at some angle.
+  const double most =
+      pair.unoccluded / (piece.nonspecular * occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]));
   for (std::size_t half = 0; half < 2; ++half) {
-    pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.held * piece.shape.area, most);
+    pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.nonspecular * piece.shape.area, most);
     pair.bin[half] = Pool::bin(rays[half].visible_share());
   }
   return pair;

@@ -66,11 +66,11 @@ std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // The first points of the sequence, as every eighth alone would lie in an eighth of the patch.
     const auto& start = samples[k / static_cast<std::size_t>(size)];
-    rays.push_back(
-        {square_to_quad(corners.points, start[0], start[1]),
-         frame * (ends_at_specular ? square_to_cosine_hemisphere(samples[k][2], samples[k][3])
-                                   : occluder.held_direction(mesh.polygon[patch], samples[k][2], samples[k][3])),
-         mesh.polygon[patch]});
+    rays.push_back({square_to_quad(corners.points, start[0], start[1]),
+                    frame * (ends_at_specular ? square_to_cosine_hemisphere(samples[k][2], samples[k][3])
+                                              : occluder.sample_nonspecular_direction(mesh.polygon[patch],
+                                                                                      samples[k][2], samples[k][3])),
+                    mesh.polygon[patch]});
   }
   return rays;
 }
@@ -151,7 +151,8 @@ Eigen::ArrayXd rays_of_patches(const LostShare& lost, PatchIndex patches) {
 
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
   Eigen::VectorXd clear(mesh.size());
-  for (PatchIndex i = 0; i < mesh.size(); ++i) clear[i] = 1 - occluder.held_share(mesh.polygon[i], mesh.side[i]);
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    clear[i] = 1 - occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
   return clear.isZero(0) ? Eigen::VectorXd() : clear;
 }
 

@@ -92,12 +92,12 @@ void for_groups(std::span<Pair> pairs, Use use) {
   }
 }
 
-std::vector<float> held_shares(const PatchMesh& mesh, const Occluder& occluder) {
-  std::vector<float> held;
-  held.reserve(mesh.size());
+std::vector<float> nonspecular_fractions(const PatchMesh& mesh, const Occluder& occluder) {
+  std::vector<float> nonspecular;
+  nonspecular.reserve(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i)
-    held.push_back(static_cast<float>(occluder.held_share(mesh.polygon[i], mesh.side[i])));
-  return held;
+    nonspecular.push_back(static_cast<float>(occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i])));
+  return nonspecular;
 }
 
 std::vector<SampledPatch> sampled_patches(const PatchMesh& mesh, const std::vector<PatchShape>& shapes,
@@ -131,11 +131,11 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),
-      held_(held_shares(mesh, occluder)),
+      nonspecular_(nonspecular_fractions(mesh, occluder)),
       table_(most_effort * samples_, options.seed) {}
 
 float PairSampler::exact(PatchIndex i, PatchIndex j) const {
-  return narrow_toward_zero(static_cast<double>(held(i, j)) *
+  return narrow_toward_zero(static_cast<double>(nonspecular_fraction(i, j)) *
                             unoccluded_exchange_area(shapes_[i], shapes_[j], far_rule_));
 }
 
@@ -266,12 +266,12 @@ double PairSampler::exchange_area(const Pair& pair) const {
   // U minus the mean weight has the expectation 0: a control variate. It is multiplied by the visible share of the
   // other samples, from which it is independent, and removes the scatter of the weights. With the same samples it would
   // add a bias.
-  const auto held_by_both = static_cast<double>(held(pair.first, pair.second));
-  const double areas = held_by_both * shapes_[pair.first].area * shapes_[pair.second].area;
+  const auto nonspecular_of_both = static_cast<double>(nonspecular_fraction(pair.first, pair.second));
+  const double areas = nonspecular_of_both * shapes_[pair.first].area * shapes_[pair.second].area;
   const double free = areas * pair.seen_weight;
   const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
-  // Clear patches may hold all light at an angle.
-  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / held_by_both);
+  // A clear patch may scatter or absorb all light at some angle.
+  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / nonspecular_of_both);
 }
 
 namespace {
@@ -300,7 +300,7 @@ ClusterHull hull_of(const PatchCluster& cluster, const PatchMesh& mesh, const st
     const std::span<const Point> patch = shapes[i].corners;
     corners.insert(corners.end(), patch.begin(), patch.end());
     hull.is_covered |= occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]);
-    hull.is_clear |= occluder.held_share(mesh.polygon[i], mesh.side[i]) < 1;
+    hull.is_clear |= occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]) < 1;
     hull.polygons.push_back(mesh.polygon[i]);
   }
   hull.slabs = occluder.shafts().slabs(corners);

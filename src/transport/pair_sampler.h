@@ -67,9 +67,10 @@ class PairSampler {
   Pair new_pair(PatchIndex i, PatchIndex j, float unoccluded) const;
 
   /// The share of the light between two patches that counts as exchanged: the part that clear patches hold back.
-  float held(PatchIndex i, PatchIndex j) const { return held_[i] * held_[j]; }
+  float nonspecular_fraction(PatchIndex i, PatchIndex j) const { return nonspecular_[i] * nonspecular_[j]; }
 
-  /// The exchange area without occluders, by closed form or quadrature in double precision, times held().
+  /// The exchange area without occluders, by closed form or quadrature in double precision, times
+  /// nonspecular_fraction().
   float exact(PatchIndex i, PatchIndex j) const;
 
   /// Traces the rays of every pair. Their number depends on the form factor, never on the hits of the first rays, so
@@ -96,7 +97,7 @@ class PairSampler {
   double scale_;
   std::vector<std::uint32_t> keys_;
   std::vector<SampledPatch> patches_;
-  std::vector<float> held_;
+  std::vector<float> nonspecular_;
   SampleTable table_;
 };
 
@@ -171,7 +172,7 @@ void ClusterPairs::for_facing(const ClusterPair& pair, LaneMask rows, LaneMask c
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       const PatchIndex j = b.patches[k];
       if (mesh_.polygon[i] == mesh_.polygon[j] || (pair.row == pair.column && j <= i)) continue;
-      float unoccluded = row.unoccluded.at[k] * sampler_.held(i, j);
+      float unoccluded = row.unoccluded.at[k] * sampler_.nonspecular_fraction(i, j);
       if ((row.exact >> k & 1) != 0 || !short_cuts_.far) {
         if (orientation(shapes_[i], shapes_[j]) == Orientation::averted) continue;
         unoccluded = -1;

@@ -22,7 +22,7 @@ double mirrored_rays(const SurfaceOptics& faces, const SpecularStop& stop) {
 // The share of light left after a stop, over the probability that the ray went this way.
 double onward_share(const SpecularShares& shares, const SurfaceOptics& faces, const SpecularStop& stop) {
   if (stop.step() == RayStep::crossed) return shares.transmitted;
-  if (stop.step() == RayStep::sent) return shares.relative_held;
+  if (stop.step() == RayStep::sent) return shares.nonspecular_profile;
   const bool is_mirrored = stop.step() == RayStep::mirrored;
   const double share = is_mirrored ? shares.mirrored : shares.transmitted;
   if (share == 0) return 0;
@@ -334,7 +334,7 @@ void tell_form_factors(std::span<const SpecularStop> stops, const SurfaceOptics&
     }
     const SpecularShares shares = faces.shares(stop.polygon, stop.side(), stop.cosine());
     const bool goes_on = stop.step() != RayStep::kept;
-    tell(stop, left * shares.held * counted);
+    tell(stop, left * shares.nonspecular * counted);
     left = goes_on ? left * onward_share(shares, faces, stop) : 1;
   }
 }

@@ -34,7 +34,7 @@ enum class RayStep : std::uint8_t {
   crossed,   ///< a shadow ray passes straight through a clear polygon
   through,   ///< a hemisphere ray passes straight through, as drawn by SpecularSurface::mirrored_rays()
   mirrored,  ///< a hemisphere ray continues as from a mirror
-  kept,      ///< the ray ends on a specular polygon, with the share that this holds
+  kept,      ///< the ray ends on a specular polygon, with the nonspecular fraction there
   ends       ///< the ray ends, with the full remaining share
 };
 inline constexpr std::uint32_t ray_steps = 6;
@@ -47,7 +47,7 @@ struct SpecularStop {
       no_patch - 1;  ///< the ray hits a side without patches, or a face that lies on the patch
 
   PatchIndex patch = in_the_open;     ///< the patch hit
-  float form_factor = 0;              ///< of the ray there, without losses on its path and if all is held
+  float form_factor = 0;              ///< of the ray there, without specular losses
   PolygonIndex polygon = no_polygon;  ///< the specular polygon hit, or from which the ray starts
   std::uint32_t bits = 0;             ///< step, side and cosine of the angle there
 
@@ -57,8 +57,8 @@ struct SpecularStop {
   double cosine() const { return static_cast<double>(bits >> 4U) * 0x1p-28; }
 };
 
-/// Computes the form factors of rays for one color and calls `tell`(stop, form factor) at every stop; 0 where nothing
-/// is held.
+/// Computes the form factors of rays for one color and calls `tell`(stop, form factor) at every stop; 0 where all
+/// light is specular.
 void tell_form_factors(std::span<const SpecularStop> stops, const SurfaceOptics& faces,
                        const std::function<void(const SpecularStop& stop, double form_factor)>& tell);
 

@@ -49,7 +49,7 @@ Way way_from(const Occluder& occluder, const std::optional<Hit>& first, std::uin
   return way;
 }
 
-// Drawn by `seed` as Occluder::first_held_hits() draws.
+// Drawn by `seed` as Occluder::sample_nonspecular_hits() draws.
 std::vector<Way> specular_ways(const Occluder& occluder, std::span<const Ray> rays, std::uint64_t seed,
                                std::span<const std::size_t> keys) {
   const std::vector<std::optional<Hit>> hits = occluder.first_hits(rays);
@@ -150,7 +150,7 @@ std::vector<SeenBy<Met>> Sights::seen_by(PatchIndex patch, std::vector<Ray> rays
 
 std::vector<Seen> Sights::of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const {
   return seen_by<std::optional<Hit>>(patch, std::move(rays), [&](const auto& some, const auto& keys) {
-    return occluder_.first_held_hits(some, seed, keys);
+    return occluder_.sample_nonspecular_hits(some, seed, keys);
   });
 }
 

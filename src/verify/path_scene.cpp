@@ -16,14 +16,14 @@ namespace {
 // The panes of each material.
 struct Panes {
   std::vector<std::vector<Pane>> panes;
-  std::vector<Spectrum> held;
+  std::vector<Spectrum> nonspecular;
 };
 
 Panes panes_of_materials(const Scene& scene, Reflections reflections) {
   Panes all;
   for (const Material& material : scene.materials) {
     all.panes.push_back(panes_of(material.index, material.transmittance));
-    all.held.push_back(hemispherical_held(all.panes.back(), reflections == Reflections::followed));
+    all.nonspecular.push_back(hemispherical_nonspecular(all.panes.back(), reflections == Reflections::followed));
   }
   return all;
 }
@@ -44,8 +44,8 @@ Surface surface_of(const Scene& scene, const Panes& panes, const std::pair<Polyg
     surface.texture_map = *map;
   }
   surface.panes = panes.panes[of_material];
-  surface.held = panes.held[of_material];
-  if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.held);
+  surface.nonspecular = panes.nonspecular[of_material];
+  if (!surface.panes.empty()) surface.reflectance = surface.reflectance.min(surface.nonspecular);
   surface.reflections = reflections;
   surface.is_clear = is_opening(scene, index);
   surface.is_specular = surface.is_clear || is_mirror(scene, index, Side::front) || is_mirror(scene, index, Side::back);
@@ -92,10 +92,10 @@ Spectrum specular_reflectance(const Surface& surface, double cosine) {
   return specular_reflectance(surface.panes, std::min(1.0, std::abs(cosine)));
 }
 
-Spectrum relative_held(const Surface& surface, double cosine) {
+Spectrum nonspecular_profile(const Surface& surface, double cosine) {
   if (surface.panes.empty()) return Spectrum::Ones(surface.reflectance.size());
   const Spectrum onward = transmittance(surface, cosine) + specular_reflectance(surface, cosine);
-  return onward.unaryExpr(&held_of) / surface.held;
+  return onward.unaryExpr(&nonspecular_rest) / surface.nonspecular;
 }
 
 Eigen::Matrix3d frame_around(const Vector& normal) {
@@ -170,8 +170,8 @@ RayEnd walk_to_end(const PathScene& scene, std::optional<Hit> hit, const Vector&
     const double sum = through.mean() + mirrored.mean() + ends;
     const double drawn = sum * uniform({seed, meeting, stream::pane_or_reflection});
     if (drawn >= through.mean() + mirrored.mean()) {
-      end.factor *=
-          ends > 0 ? Spectrum(relative_held(surface, cosine) * (sum / ends)) : Spectrum(Spectrum::Zero(scene.bands()));
+      end.factor *= ends > 0 ? Spectrum(nonspecular_profile(surface, cosine) * (sum / ends))
+                             : Spectrum(Spectrum::Zero(scene.bands()));
       break;
     }
     const bool is_mirrored = drawn >= through.mean();

@@ -31,7 +31,7 @@ struct Surface {
   std::optional<TexturedReflectance> texture;
   TextureMap texture_map;   ///< where there is one
   std::vector<Pane> panes;  ///< per band; none of an opaque side
-  Spectrum held;            ///< of a clear one: the share of light from all directions alike that is kept, per band
+  Spectrum nonspecular;     ///< of a clear one: the mean share that is absorbed or scattered, per band
   Spectrum mirrored;  ///< the share of light that is reflected as by a mirror at all angles; 0 of a clear one, and
                       ///< where reflections are not followed
   Reflections reflections = Reflections::kept;
@@ -50,7 +50,7 @@ Spectrum specular_reflectance(const Surface& surface, double cosine);
 
 /// The share kept at this angle relative to the share kept of diffuse light. A pane weights its emitted and its
 /// reflected light by this: docs/theory/panes-mirrors-sheets.md.
-Spectrum relative_held(const Surface& surface, double cosine);
+Spectrum nonspecular_profile(const Surface& surface, double cosine);
 
 /// The sides of a scene's polygons.
 struct Surfaces {

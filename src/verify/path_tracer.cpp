@@ -248,7 +248,7 @@ class PathTracer {
   Batch trace(std::vector<Vertex> vertices, std::uint32_t paths, std::uint64_t seed) const;
 
  private:
-  Spectrum relative_held_at(const Vertex& vertex, const Vector& direction) const;
+  Spectrum nonspecular_profile_at(const Vertex& vertex, const Vector& direction) const;
   std::uint64_t rays_of(std::size_t count, double asked) const;
   Spectrum light_from_lamps(const std::vector<Vertex>& vertices, const Samples& samples) const;
   Spectrum light_from_sources(const std::vector<Vertex>& vertices, const Samples& samples, const PathStep& step) const;
@@ -302,10 +302,10 @@ std::vector<Vertex> PathTracer::starts(const PathRegion& region, std::uint32_t p
 }
 
 // The relative response of a clear receiver to light from a unit direction; 1 at all other places.
-Spectrum PathTracer::relative_held_at(const Vertex& vertex, const Vector& direction) const {
+Spectrum PathTracer::nonspecular_profile_at(const Vertex& vertex, const Vector& direction) const {
   if (vertex.polygon == no_polygon || !surfaces_.at(vertex.polygon, vertex.side).is_clear)
     return Spectrum::Ones(bands());
-  return relative_held(surfaces_.at(vertex.polygon, vertex.side), vertex.normal.dot(direction));
+  return nonspecular_profile(surfaces_.at(vertex.polygon, vertex.side), vertex.normal.dot(direction));
 }
 
 // Light by points y on lamps, one for each vertex x: E(y) G / p with G = cos cos' / (pi |x - y|^2) and the density p of
@@ -326,8 +326,8 @@ Spectrum PathTracer::light_from_lamps(const std::vector<Vertex>& vertices, const
     const double g = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
     segments.push_back({vertex.point, lamp.point, vertex.polygon, lamp.polygon});
     unoccluded.emplace_back(vertex.throughput * there.exitance * g / (sampling_density(lamps_, there) + g));
-    unoccluded.back() *= relative_held_at(vertex, toward.normalized());
-    if (there.is_clear) unoccluded.back() *= relative_held(there, cosine_there / toward.norm());
+    unoccluded.back() *= nonspecular_profile_at(vertex, toward.normalized());
+    if (there.is_clear) unoccluded.back() *= nonspecular_profile(there, cosine_there / toward.norm());
   }
   const Field transmittance = scene_.transmittance(segments);
   for (std::size_t k = 0; k < segments.size(); ++k)
@@ -385,7 +385,7 @@ Step PathTracer::scatter(const std::vector<Vertex>& vertices, const Samples& sam
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Vertex& vertex = vertices[k];
     const RayEnd end = walk_to_end(scene_, hits[k], rays[k].direction, hash({seed, vertex.path}));
-    const Spectrum throughput = vertex.throughput * end.factor * relative_held_at(vertex, rays[k].direction);
+    const Spectrum throughput = vertex.throughput * end.factor * nonspecular_profile_at(vertex, rays[k].direction);
     // pi L, as directions are distributed as cos(theta) / pi.
     if (!end.hit && sky_) step.irradiance += std::numbers::pi * throughput * sky_->radiance_from(end.direction);
     if (!end.hit || !surfaces_.at(end.hit->polygon, end.hit->side).kept) continue;

@@ -203,8 +203,8 @@ Occluder::Tracer::Tracer(const Scene& scene, Blockers which, std::shared_ptr<con
 float Occluder::Tracer::arriving_along(const Segment& ray, Crossed crossed) const {
   std::ranges::sort(crossed.all());
   const Vector direction = (ray.to - ray.from).normalized();
-  double share =
-      specular.relative_held(ray.from_polygon, direction) * specular.relative_held(ray.to_polygon, direction);
+  double share = specular.nonspecular_profile(ray.from_polygon, direction) *
+                 specular.nonspecular_profile(ray.to_polygon, direction);
   for (const PolygonIndex polygon : crossed.all()) share *= specular.transmittance(polygon, direction);
   return static_cast<float>(share);
 }
@@ -362,14 +362,16 @@ Vector Occluder::mirrored(PolygonIndex polygon, const Vector& direction) const {
   return tracer_->specular.mirrored(polygon, direction);
 }
 
-double Occluder::held_share(PolygonIndex polygon, Side side) const { return tracer_->specular.held(polygon, side); }
-
-double Occluder::relative_held(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->specular.relative_held(polygon, direction);
+double Occluder::nonspecular_fraction(PolygonIndex polygon, Side side) const {
+  return tracer_->specular.nonspecular_fraction(polygon, side);
 }
 
-Vector Occluder::held_direction(PolygonIndex polygon, double u, double v) const {
-  return tracer_->specular.held_direction(polygon, u, v);
+double Occluder::nonspecular_profile(PolygonIndex polygon, const Vector& direction) const {
+  return tracer_->specular.nonspecular_profile(polygon, direction);
+}
+
+Vector Occluder::sample_nonspecular_direction(PolygonIndex polygon, double u, double v) const {
+  return tracer_->specular.sample_nonspecular_direction(polygon, u, v);
 }
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
@@ -458,8 +460,8 @@ std::optional<Ray> onward(const Occluder& occluder, const Hit& hit, double drawn
 }  // namespace
 
 // At each specular polygon a ray continues with the probability of its transmittance or reflectance.
-std::vector<std::optional<Hit>> Occluder::first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
-                                                          std::span<const std::size_t> keys) const {
+std::vector<std::optional<Hit>> Occluder::sample_nonspecular_hits(std::span<const Ray> rays, std::uint64_t seed,
+                                                                  std::span<const std::size_t> keys) const {
   assert(keys.empty() || keys.size() == rays.size());
   std::vector<std::optional<Hit>> hits = first_hits(rays);
   if (tracer_->specular.empty()) return hits;

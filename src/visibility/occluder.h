@@ -92,9 +92,9 @@ class Occluder {
 
   /// The transmittance along each segment. It is 0 if a polygon blocks the segment. Else it is the product of the
   /// transmittances of the clear polygons between its ends, at their angles of incidence. An end on a clear polygon
-  /// multiplies it by relative_held() there. Times held_share() it is then the share of light from one polygon to the
-  /// other, docs/theory/panes-mirrors-sheets.md (15); it may exceed 1. Embree works in packets: pass hundreds of
-  /// segments at once.
+  /// multiplies it by nonspecular_profile() there. Times nonspecular_fraction() it is then the share of light from one
+  /// polygon to the other, docs/theory/panes-mirrors-sheets.md (15); it may exceed 1. Embree works in packets: pass
+  /// hundreds of segments at once.
   std::vector<float> transmittance(std::span<const Segment> segments) const;
 
   /// The same for each ray of a packet. For speed the ends are in single precision, so the rule above holds with 3e-7
@@ -116,15 +116,15 @@ class Occluder {
   Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
 
   /// The share of uniform light that a side of a polygon keeps: 1 except for clear polygons and mirrors.
-  double held_share(PolygonIndex polygon, Side side) const;
+  double nonspecular_fraction(PolygonIndex polygon, Side side) const;
 
-  /// The share of light in a unit direction that a polygon keeps, divided by held_share(): 1 if it is opaque.
-  double relative_held(PolygonIndex polygon, const Vector& direction) const;
+  /// The share of light in a unit direction that a polygon keeps, divided by nonspecular_fraction(): 1 if it is opaque.
+  double nonspecular_profile(PolygonIndex polygon, const Vector& direction) const;
 
   /// Maps (u, v) of the unit square to a direction in a frame whose third axis is the polygon's normal. Directions are
   /// distributed as the light that the polygon keeps of uniform light. For an opaque polygon it is
   /// square_to_cosine_hemisphere().
-  Vector held_direction(PolygonIndex polygon, double u, double v) const;
+  Vector sample_nonspecular_direction(PolygonIndex polygon, double u, double v) const;
 
   /// The clear polygons that each ray of a packet crosses between its ends, in the order of the scene; nothing if an
   /// opaque polygon blocks it.
@@ -153,8 +153,8 @@ class Occluder {
   /// The same, but a ray passes a clear polygon with the probability of its transmittance at the ray's angle, and is
   /// mirrored with that of its reflectance. So on average hits are weighted by the share of light that polygons hold
   /// back. Rays with the same key and seed continue alike; without `keys` the index of each ray is its key.
-  std::vector<std::optional<Hit>> first_held_hits(std::span<const Ray> rays, std::uint64_t seed,
-                                                  std::span<const std::size_t> keys = {}) const;
+  std::vector<std::optional<Hit>> sample_nonspecular_hits(std::span<const Ray> rays, std::uint64_t seed,
+                                                          std::span<const std::size_t> keys = {}) const;
 
   /// True when another polygon covers this place of a side of a polygon, in the same plane.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;

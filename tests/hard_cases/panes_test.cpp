@@ -48,7 +48,7 @@ Material glass(double transmittance, double reflectance, double exitance = 0) {
 double held_by(double transmittance) {
   const Scene scene = with_quad(empty_scene({glass(transmittance, 0)}),
                                 {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
-  return SurfaceOptics(scene).held(0, Side::front);
+  return SurfaceOptics(scene).nonspecular_fraction(0, Side::front);
 }
 
 // An upright rectangle in a plane of constant x whose front faces -x or +x.

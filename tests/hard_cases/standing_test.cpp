@@ -165,7 +165,7 @@ TEST(BlockOnAPane, IsLitAroundWithKnownFormFactors) {
   Exchange known = find_form_factors(scene, request).exchange;
   known.lost.clear = {};
   const Simulation lit = simulate(scene, request, {}, {.exchange = [&](const PatchMesh&) { return known; }});
-  const double expected = 100 * SurfaceOptics(scene).held(0, Side::front) * (16 - 2.25) + 225;
+  const double expected = 100 * SurfaceOptics(scene).nonspecular_fraction(0, Side::front) * (16 - 2.25) + 225;
   EXPECT_NEAR(lit.balance.arriving[0], expected, 0.001 * expected);
 }
 

@@ -36,7 +36,7 @@ void expect_holes(const Material& material, double covered, const Spectrum& refl
   expect_near(material.transmittance, Spectrum::Constant(3, 1 - covered));
   expect_near(material.reflectance, reflectance);
   expect_near(transmittance(panes_of(material.index, material.transmittance), 0.1), Spectrum::Constant(3, 1 - covered));
-  const Spectrum held = hemispherical_held(panes_of(material.index, material.transmittance));
+  const Spectrum held = hemispherical_nonspecular(panes_of(material.index, material.transmittance));
   EXPECT_NEAR(held[0], covered, 1e-9);
   EXPECT_FALSE(material.texture);
 }

@@ -44,11 +44,11 @@ TEST(SpecularSurface, KeepsOneOverTheHemisphereRelativeToWhatItHolds) {
   for (int k = 0; k <= intervals; ++k) {
     const double mu = static_cast<double>(k) / intervals;
     const double weight = k == 0 || k == intervals ? 1 : k % 2 == 1 ? 4 : 2;
-    sum += weight / (3 * intervals) * 2 * mu * face.relative_held(mu);
+    sum += weight / (3 * intervals) * 2 * mu * face.nonspecular_profile(mu);
   }
   EXPECT_NEAR(sum, 1, 1e-5);
-  EXPECT_GT(face.held(Side::front), 0.2 + 0.05) << "less gets through at an angle";
-  EXPECT_NEAR(hemispherical_held({pane_of(1.52, 0.8)})[0], face.held(Side::front), 1e-14);
+  EXPECT_GT(face.nonspecular_fraction(Side::front), 0.2 + 0.05) << "less gets through at an angle";
+  EXPECT_NEAR(hemispherical_nonspecular({pane_of(1.52, 0.8)})[0], face.nonspecular_fraction(Side::front), 1e-14);
 }
 
 TEST(SpecularSurface, SamplesDirectionsAsItHoldsLight) {
@@ -59,9 +59,9 @@ TEST(SpecularSurface, SamplesDirectionsAsItHoldsLight) {
   double one = 0;
   double cosine = 0;
   for (int k = 0; k < samples; ++k) {
-    const double mu = face.held_cosine((k + 0.5) / samples);
-    one += 1 / face.relative_held(mu) / samples;
-    cosine += mu / face.relative_held(mu) / samples;
+    const double mu = face.sample_nonspecular_cosine((k + 0.5) / samples);
+    one += 1 / face.nonspecular_profile(mu) / samples;
+    cosine += mu / face.nonspecular_profile(mu) / samples;
   }
   EXPECT_NEAR(one, 1, 1e-4);
   EXPECT_NEAR(cosine, 2.0 / 3, 1e-4);
@@ -70,10 +70,10 @@ TEST(SpecularSurface, SamplesDirectionsAsItHoldsLight) {
 TEST(SurfaceOptics, KnowWhichPolygonsAreClear) {
   const SurfaceOptics faces(coloured_pane(rgb(0.8, 0.8, 0.8)));
   EXPECT_FALSE(faces.empty());
-  EXPECT_EQ(faces.held(0, Side::front), 1);
+  EXPECT_EQ(faces.nonspecular_fraction(0, Side::front), 1);
   EXPECT_EQ(faces.transmittance(0, Vector::UnitZ()), 0);
-  EXPECT_EQ(faces.relative_held(0, Vector::UnitZ()), 1);
-  EXPECT_EQ(faces.relative_held(no_polygon, Vector::UnitZ()), 1);
+  EXPECT_EQ(faces.nonspecular_profile(0, Vector::UnitZ()), 1);
+  EXPECT_EQ(faces.nonspecular_profile(no_polygon, Vector::UnitZ()), 1);
   EXPECT_NEAR(faces.transmittance(1, -Vector::UnitZ()), 0.8, 1e-14);
   EXPECT_LT(faces.transmittance(1, Vector(0.8, 0, 0.6)), 0.78);
   EXPECT_TRUE(SurfaceOptics(cube_room(0.5, 1)).empty());

@@ -27,7 +27,10 @@ Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& ca
                  const Vector& up = Vector::UnitZ()) {
   const PatchMesh mesh = front_patches(scene);
   const Eigen::VectorXd area = Eigen::Map<const Eigen::VectorXd>(mesh.area.data(), mesh.size());
-  const Occluder occluder(scene);
+  Scene of_bands = scene;
+  for (Material& material : of_bands.materials)
+    material.reflectance = material.exitance = Spectrum::Zero(radiance.cols());
+  const Occluder occluder(of_bands);
   return render(mesh, smooth(mesh, radiance, area, occluder), occluder, occluder.optics(), camera, up, options);
 }
 
