@@ -28,6 +28,13 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A requested exposure; by default, a series of images has that of its first.
+struct Exposure {
+  std::optional<double> factor = {};  ///< PictureOptions::exposure
+  double stops = 0;                   ///< PictureOptions::stops
+  bool each = false;                  ///< each image of a series has its own
+};
+
 /// A requested image.
 struct PictureSettings {
   std::filesystem::path file;       ///< .png, .hdr or .exr; empty: none
@@ -35,6 +42,8 @@ struct PictureSettings {
   std::optional<Camera> camera;     ///< model units
   std::vector<std::string> views;   ///< names of cameras of the scene, instead of `camera`; empty: the first camera
   PictureColors colors = PictureColors::natural;
+  Exposure exposure;
+  std::optional<double> brightest;  ///< PictureOptions::brightest
   PictureQuality quality = PictureQuality::draft;
   std::array<int, 2> size{800, 800};  ///< width and height, pixels
   double error = 0.01;                ///< PictureOptions::error

@@ -138,7 +138,16 @@ constexpr OptionText options[] = {
     {"--view", "render", pictures, common, "NAME", "Camera of the scene file (repeatable) [default: the first]", ""},
     {"--view", "", pictures, usual, "NAME", "Camera of the scene file [default: the first]", ""},
     {"--size", "", pictures, usual, "WIDTHxHEIGHT", "Size of the image in pixels [default: 800x800]", ""},
-    {"--false-color", "", pictures, usual, "luminance", "False colors with a legend in cd/m^2 [default: natural]", ""},
+    {"--exposure", "render", pictures, usual, "VALUE|+STOPS|each", "Exposure [default: automatic, one for all views]",
+     "VALUE is the factor from W/(m^2 sr) to display values, as the .png states it. +1 is one stop (twice) brighter "
+     "than automatic, -1 one stop darker. All images of a run have the exposure of the first; with each, every image "
+     "has its own."},
+    {"--exposure", "", pictures, usual, "VALUE|+STOPS", "Exposure of the image [default: automatic]",
+     "VALUE is the factor from W/(m^2 sr) to display values, as the .png states it. +1 is one stop (twice) brighter "
+     "than automatic, -1 one stop darker."},
+    {"--false-color", "", pictures, usual, "luminance[:END]", "False colors with a legend [default: natural]",
+     "END is the end of the scale in cd/m^2, e.g. luminance:500. Default: a round number above 95 % of the lit pixels; "
+     "all images of a run have the scale of the first."},
     {"--picture-quality", "render", pictures, usual, "draft|final", "Quality of the image [default: final]",
      "draft shows the smoothed solution. final computes the illumination of every visible point."},
     {"--picture-quality", "", pictures, usual, "draft|final", "Quality of the image [default: draft]",

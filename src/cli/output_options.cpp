@@ -26,6 +26,29 @@ std::array<int, 2> size_of_picture(const std::string& option, const std::string&
   return {edge(text.substr(0, cross)), edge(text.substr(cross + 1))};
 }
 
+// A factor, a signed number of stops, or "each".
+Exposure exposure_value(const std::string& option, const std::string& text) {
+  if (text == "each") return {.each = true};
+  const std::string expected = "a factor above 0, stops with a sign, e.g. +1, or each";
+  if (text.starts_with('-') || text.starts_with('+')) {
+    const auto few = [](double stops) { return std::abs(stops) <= 100; };
+    return {.stops = number(option, text.substr(text[0] == '+' ? 1 : 0), expected, few)};
+  }
+  return {.factor = number(option, text, expected, [](double factor) { return factor > 0; })};
+}
+
+void add_color_options(CLI::App& command, PictureGiven& given) {
+  add(command, "--exposure", given.exposure, exposure_value);
+  add(command, "--false-color", [&given](const std::string& text) {
+    const std::size_t colon = text.find(':');
+    given.colors =
+        choice<PictureColors>("--false-color", text.substr(0, colon), {{"luminance", PictureColors::luminance}});
+    if (colon == std::string::npos) return;
+    given.brightest = number("--false-color", text.substr(colon + 1),
+                             "the end of the scale in cd/m^2, e.g. luminance:500", [](double end) { return end > 0; });
+  });
+}
+
 void add_camera_options(CLI::App& command, PictureGiven& given) {
   option_text(command.get_name(), "--camera");
   const auto take = [&given](const std::vector<std::string>& values) {
@@ -59,6 +82,7 @@ void require_picture_of(const PictureGiven& given, const std::string& file_optio
   const char* const needs = given.camera && picture_alone           ? "--camera"
                             : !given.views.empty() && picture_alone ? "--view"
                             : given.colors                          ? "--false-color"
+                            : given.exposure                        ? "--exposure"
                             : given.quality                         ? "--picture-quality"
                             : given.size                            ? "--size"
                             : given.error                           ? "--picture-error"
@@ -181,7 +205,7 @@ void add_view_options(CLI::App& command, PictureGiven& given) {
 }
 
 void add_picture_options(CLI::App& command, PictureGiven& given) {
-  add_choice<PictureColors>(command, "--false-color", given.colors, {{"luminance", PictureColors::luminance}});
+  add_color_options(command, given);
   add_view_options(command, given);
   add_choice<PictureQuality>(command, "--picture-quality", given.quality,
                              {{"draft", PictureQuality::draft}, {"final", PictureQuality::final}});
@@ -203,6 +227,8 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
   if (given.camera)
     settings.camera = with_projection(*given.camera, given.projection.value_or(Projection::perspective));
   settings.colors = given.colors.value_or(PictureColors::natural);
+  settings.exposure = given.exposure.value_or(Exposure());
+  settings.brightest = given.brightest;
   settings.quality = given.quality.value_or(usual);
   if (given.size) settings.size = *given.size;
   settings.error = given.error.value_or(settings.error);
@@ -218,9 +244,11 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
                                  : given.most_samples ? "--picture-samples"
                                                       : "--picture-error-map") +
                      " is of final pictures; give --picture-quality final");
-  if (given.colors && settings.file.extension() != ".png")
-    throw UsageError("--false-color is of pictures in PNG; found '" + given.file +
-                     "', which has luminances themselves");
+  if (given.exposure && given.colors)
+    throw UsageError("--exposure is of natural colors; for false colors give --false-color luminance:END");
+  if ((given.colors || given.exposure) && settings.file.extension() != ".png")
+    throw UsageError(std::string(given.colors ? "--false-color" : "--exposure") + " is of pictures in PNG; found '" +
+                     given.file + "', which has luminances themselves");
   return settings;
 }
 

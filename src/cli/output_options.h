@@ -25,6 +25,8 @@ struct PictureGiven {
   std::optional<Camera> camera;  ///< model units
   std::optional<Projection> projection;
   std::optional<PictureColors> colors;
+  std::optional<double> brightest;
+  std::optional<Exposure> exposure;
   std::optional<PictureQuality> quality;
   std::optional<std::array<int, 2>> size;
   std::optional<double> error;

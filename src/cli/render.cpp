@@ -45,6 +45,14 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
   return cameras;
 }
 
+// So that equal radiances have equal colors in all images of a series, the others take the scale of the first.
+void share_scale(std::vector<PictureSettings>& series, const Picture& first) {
+  for (PictureSettings& one : series) {
+    one.brightest = first.brightest;
+    if (!one.exposure.each) one.exposure.factor = first.exposure;
+  }
+}
+
 // Adds the patches that are enclosed by day, which the file does not contain.
 Simulation stored_solution(const std::filesystem::path& file, const std::shared_ptr<const Scene>& scene) {
   Simulation simulation = read_solution(file, scene);
@@ -108,6 +116,9 @@ Picture make_picture(const PictureSettings& settings, const Scene& scene, const 
   return take_picture(simulation,
                       {.camera = camera_for(settings, scene),
                        .colors = settings.colors,
+                       .exposure = settings.exposure.factor,
+                       .stops = settings.exposure.stops,
+                       .brightest = settings.brightest,
                        .width = settings.size[0],
                        .height = settings.size[1],
                        .quality = settings.quality,
@@ -139,7 +150,7 @@ void write_picture_file(const std::filesystem::path& file, const Picture& pictur
 
 ExitCode render(const RenderArguments& arguments) {
   // 1. Refuse outputs that cannot be written or would be lost
-  const std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
+  std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
   if (!arguments.observers.empty()) check_writable(arguments.observers);
   for (const PictureSettings& one : wanted) {
     if (!one.file.empty()) check_writable(one.file);
@@ -175,6 +186,7 @@ ExitCode render(const RenderArguments& arguments) {
     if (one.file.empty()) break;
     keep_what_is_there();
     Picture picture = make_picture(one, scene, simulation, observer);
+    if (&one == &wanted.front()) share_scale(wanted, picture);
     std::optional<Picture> of_other;
     if (other) of_other = make_picture(one, scene, *other, observer);
     stopped = interrupted();

@@ -50,7 +50,7 @@ Eigen::VectorXd reference_luminances(const std::vector<PixelSamples>& pixels) {
 struct PictureView {
   const SolvedLight& solved;
   const GatheredLight& gather;
-  const std::vector<SeenSphere>& spheres;
+  const std::vector<SeenLuminaire>& luminaires;
   const Lens& lens;
 };
 
@@ -75,7 +75,7 @@ std::vector<Candidate> seen_in_row(const PictureView& view, int width, int y, in
   }
   std::vector<Candidate> all;
   for (const SeenPatch& seen : seen_by(view.solved.occluder, *view.solved.lights.lighting.paths.optics(),
-                                       view.gather.lookup(), rays, view.spheres)) {
+                                       view.gather.lookup(), rays, view.luminaires)) {
     if (!seen.patch || !is_plain(view.solved, *seen.patch)) continue;
     const double pixel_width = view.lens.pixel_width(seen.distance);
     all.push_back({{seen.point, *seen.patch}, pixel_width});
@@ -197,7 +197,7 @@ class FinalGather {
   const Lens& lens_;
   const FinalGatherOptions& options_;
   GatheredLight gather_;
-  std::vector<SeenSphere> spheres_;
+  std::vector<SeenLuminaire> luminaires_;
   IrradianceCache records_;
   std::vector<PixelTile> tiles_;
   std::vector<PixelSamples> pixels_;
@@ -212,7 +212,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
       lens_(lens),
       options_(options),
       gather_(solved),
-      spheres_(spheres_of(solved.lights.lighting.luminaires)),
+      luminaires_(seen_luminaires(solved.lights.lighting.luminaires, solved.lights.lighting.up)),
       records_(solved.luminous_weights),
       tiles_(tiles_of(options.width, options.height)) {
   const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;
@@ -225,7 +225,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
 }
 
 void FinalGather::place_records(const Observer& observer) {
-  records_ = gathered_records({solved_, gather_, spheres_, lens_}, options_, observer);
+  records_ = gathered_records({solved_, gather_, luminaires_, lens_}, options_, observer);
 }
 
 EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std::uint32_t>& counts) const {
@@ -266,12 +266,12 @@ FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
   const auto add = [&](const SeenPatch& seen, PatchIndex patch, const Spectrum& factor) {
     if ((factor > 0).any()) all.points.push_back({samples.of_rays[seen.ray], {seen.point, patch}, factor});
   };
-  for (const SeenPatch& seen :
-       seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), samples.rays, spheres_)) {
+  for (const SeenPatch& seen : seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(),
+                                       samples.rays, luminaires_)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
     if (seen.outlook) all.brought.outlook[ray] += seen.share.mean();
-    if (seen.sphere != nullptr) {
-      radiance.row(ray) += seen.share * seen.sphere->radiance;
+    if (seen.luminaire != nullptr) {
+      radiance.row(ray) += seen.share * seen.luminaire->radiance(-seen.direction);
       continue;
     }
     if (!seen.patch) {
@@ -357,7 +357,7 @@ void FinalGather::see_layers() {
       }
     }
     for (const SeenPatch& seen :
-         seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), rays, spheres_)) {
+         seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), rays, luminaires_)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;

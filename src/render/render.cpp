@@ -3,11 +3,13 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "lighting/lighting.h"
 #include "visibility/walk.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -15,24 +17,76 @@
 namespace patchlight {
 namespace {
 
-struct MetSphere {
-  const SeenSphere* sphere = nullptr;
+struct MetLuminaire {
+  const SeenLuminaire* luminaire = nullptr;
   double distance = std::numeric_limits<double>::infinity();
 };
 
-// The nearest one on the way of a ray.
-MetSphere met_by(const Ray& ray, const std::vector<SeenSphere>& spheres) {
-  MetSphere met;
-  for (const SeenSphere& sphere : spheres) {
-    // |o + t d - c| = r
-    const Vector way = sphere.centre - ray.origin;
-    const double nearest = way.dot(ray.direction);
-    const double root = sphere.radius * sphere.radius - (way - nearest * ray.direction).squaredNorm();
-    if (!(root > 0)) continue;
-    const double distance = nearest - std::sqrt(root);
-    if (distance > 0 && distance < met.distance) met = {&sphere, distance};
+// 1 for width, length and height of a shape that are axes of its ellipse, 0 for those along which it is straight.
+Vector round_axes(OpeningShape shape) {
+  if (shape == OpeningShape::upright_cylinder) return {1, 1, 0};
+  if (shape == OpeningShape::cylinder_by_length) return {1, 0, 1};
+  if (shape == OpeningShape::cylinder_by_width) return {0, 1, 1};
+  return shape == OpeningShape::ellipsoid ? Vector::Ones() : Vector::Zero();
+}
+
+// The distance at which a ray enters a shape; infinity if it does not, below 0 from the inside.
+double entry(const Ray& ray, const SeenLuminaire& luminaire) {
+  const Vector from = luminaire.to_unit * (ray.origin - luminaire.centre), way = luminaire.to_unit * ray.direction;
+  const Vector round = round_axes(luminaire.shape);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double enter = -infinity, leave = infinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (round[axis] != 0) continue;
+    const double a = (-1 - from[axis]) / way[axis], b = (1 - from[axis]) / way[axis];
+    enter = std::max(enter, std::min(a, b));
+    leave = std::min(leave, std::max(a, b));
+  }
+  if (round.any()) {
+    // |o + t d| = 1 across the straight axis
+    const Vector o = from.cwiseProduct(round), d = way.cwiseProduct(round);
+    const double square = std::max(d.squaredNorm(), std::numeric_limits<double>::min());
+    const double nearest = -o.dot(d) / square;
+    const double root = (1 - (o + nearest * d).squaredNorm()) / square;
+    if (!(root > 0)) return infinity;
+    enter = std::max(enter, nearest - std::sqrt(root));
+    leave = std::min(leave, nearest + std::sqrt(root));
+  }
+  return enter < leave ? enter : infinity;
+}
+
+// The nearest one on the way of a ray that shines back along it.
+MetLuminaire met_by(const Ray& ray, const std::vector<SeenLuminaire>& luminaires) {
+  MetLuminaire met;
+  for (const SeenLuminaire& luminaire : luminaires) {
+    const Vector way = luminaire.centre - ray.origin;
+    if (way.cross(ray.direction).squaredNorm() > luminaire.reach * luminaire.reach) continue;
+    const double distance = entry(ray, luminaire);
+    if (distance > 0 && distance < met.distance && (luminaire.radiance(-ray.direction) > 0).any())
+      met = {&luminaire, distance};
   }
   return met;
+}
+
+SeenLuminaire seen_sphere(const Luminaire& luminaire, const SphericalLamp& lamp) {
+  return {luminaire.position, lamp.radius, OpeningShape::ellipsoid, Eigen::Matrix3d::Identity() / lamp.radius,
+          [radiance = Spectrum(lamp.exitance / std::numbers::pi)](const Vector&) { return radiance; }};
+}
+
+SeenLuminaire seen_opening(const Luminaire& luminaire, std::shared_ptr<const PhotometricWeb> web, const Vector& up) {
+  constexpr double least = 1e-9;  // m, of a flat opening: its rim is as good as never met
+  const LuminaireFrame frame{luminaire.aim, luminaire.zero_plane};
+  Eigen::Matrix3d axes;
+  axes << frame.zero_plane.cross(frame.aim), frame.zero_plane, frame.aim;
+  const Vector half = web->opening.cwiseMax(least) / 2;
+  const auto radiance = [luminaire, web, frame, up](const Vector& direction) -> Spectrum {
+    // E at 1 m is I
+    const Arrival arrival =
+        from_luminaire(luminaire, up, {luminaire.position + direction, -direction}, Eigen::Vector2d::Zero());
+    const double area = projected_opening(*web, frame, direction);
+    return *arrival.colour * (area > 0 ? arrival.irradiance / area : 0);
+  };
+  return {luminaire.position, half.norm(), web->shape, half.cwiseInverse().asDiagonal() * axes.transpose(), radiance};
 }
 
 // Patches whose sight lines are traced together.
@@ -127,27 +181,29 @@ Segment short_ray(const Point& from, const Vector& normal, PolygonIndex polygon,
 
 }  // namespace
 
-std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires) {
-  std::vector<SeenSphere> spheres;
+std::vector<SeenLuminaire> seen_luminaires(const std::vector<Luminaire>& luminaires, const Vector& up) {
+  std::vector<SeenLuminaire> all;
   for (const Luminaire& luminaire : luminaires) {
-    const auto* const lamp = std::get_if<SphericalLamp>(&luminaire.light);
-    if (lamp != nullptr) spheres.push_back({luminaire.position, lamp->radius, lamp->exitance / std::numbers::pi});
+    if (const auto* const lamp = std::get_if<SphericalLamp>(&luminaire.light))
+      all.push_back(seen_sphere(luminaire, *lamp));
+    else if (const auto* const light = std::get_if<WebLight>(&luminaire.light))
+      all.push_back(seen_opening(luminaire, light->web, up));
   }
-  return spheres;
+  return all;
 }
 
 std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
-                               const std::vector<Ray>& rays, const std::vector<SeenSphere>& spheres) {
+                               const std::vector<Ray>& rays, const std::vector<SeenLuminaire>& luminaires) {
   std::vector<SeenPatch> all;
   walk(occluder, optics, rays, {.least_throughput = 0.01},
        [&](const SpecularPath& path, const std::optional<Hit>& hit) {
          SeenPatch seen{.ray = path.start, .direction = path.ray.direction, .share = path.throughput};
          seen.outlook = path.crossings > 0;
-         const MetSphere met = met_by(path.ray, spheres);
-         if (met.sphere && (!hit || met.distance < hit->distance)) {
+         const MetLuminaire met = met_by(path.ray, luminaires);
+         if (met.luminaire && (!hit || met.distance < hit->distance)) {
            seen.point = path.ray.origin + met.distance * seen.direction;
            seen.distance = path.distance + met.distance;
-           seen.sphere = met.sphere;
+           seen.luminaire = met.luminaire;
            all.push_back(seen);
            return Continuation::ends;
          }
@@ -212,14 +268,14 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
   const std::vector<PixelTile> tiles = tiles_of(options.width, options.height);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
     const auto [rays, pixels] = camera_rays(lens, options, tiles[index]);
-    for (const SeenPatch& seen : seen_by(occluder, optics, lookup, rays, options.spheres)) {
+    for (const SeenPatch& seen : seen_by(occluder, optics, lookup, rays, options.luminaires)) {
       const Eigen::Index pixel = pixels[seen.ray];
       const Spectrum share = seen.share / rays_per_pixel;
       if (seen.outlook) image.outlook[pixel] += share.mean();
       if (seen.patch)
         image.pixels.row(pixel) += value_at(mesh, radiance, occluder, *seen.patch, seen.point) * share;
-      else if (seen.sphere != nullptr)
-        image.pixels.row(pixel) += seen.sphere->radiance * share;
+      else if (seen.luminaire != nullptr)
+        image.pixels.row(pixel) += seen.luminaire->radiance(-seen.direction) * share;
       else if (options.surroundings)
         image.pixels.row(pixel) += options.surroundings(seen.direction) * share;
     }

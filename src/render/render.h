@@ -10,6 +10,7 @@
 #include "mesh/interpolate.h"
 #include "mesh/patch_lookup.h"
 #include "render/camera.h"
+#include "scene/photometric_web.h"
 #include "visibility/occluder.h"
 
 #include <Eigen/Core>
@@ -21,11 +22,13 @@
 
 namespace patchlight {
 
-/// A sphere that emits evenly and is opaque.
-struct SeenSphere {
+/// The luminous shape of a luminaire as rays see it. It is for display: it neither adds light nor casts shadows.
+struct SeenLuminaire {
   Point centre;
-  double radius = 0;  ///< meters
-  Spectrum radiance;  ///< W/(m^2 sr)
+  double reach = 0;  ///< m, from the center to its farthest point or beyond
+  OpeningShape shape = OpeningShape::ellipsoid;
+  Eigen::Matrix3d to_unit;                          ///< maps width, length and height to [-1, 1]
+  std::function<Spectrum(const Vector&)> radiance;  ///< W/(m^2 sr) in a unit direction from it; rays pass if it is 0
 };
 
 /// A patch that a ray sees, behind clear faces or not; none where it meets nothing.
@@ -34,19 +37,20 @@ struct SeenPatch {
   std::optional<PatchIndex> patch = {};
   Point point = Point::Zero();  ///< on the patch
   Vector direction = Vector::Zero();
-  Spectrum share;                      ///< of its light that arrives, after clear faces and mirrors on the way
-  bool outlook = false;                ///< behind a clear face, or nothing is met
-  double distance = 0;                 ///< along the way from the ray's origin, meters
-  const SeenSphere* sphere = nullptr;  ///< seen in place of a patch
+  Spectrum share;                            ///< of its light that arrives, after clear faces and mirrors on the way
+  bool outlook = false;                      ///< behind a clear face, or nothing is met
+  double distance = 0;                       ///< along the way from the ray's origin, meters
+  const SeenLuminaire* luminaire = nullptr;  ///< seen in place of a patch
 };
 
-/// The luminaires that are spheres.
-std::vector<SeenSphere> spheres_of(const std::vector<Luminaire>& luminaires);
+/// The luminaires that have a size: spheres, and IES luminaires with the luminous opening of their file. The radiance
+/// of an opening is its intensity in a direction over its projected area.
+std::vector<SeenLuminaire> seen_luminaires(const std::vector<Luminaire>& luminaires, const Vector& up);
 
 /// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
-/// in it. Rays pass sides without patches and end on spheres.
+/// in it. Rays pass sides without patches and end on luminaires.
 std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
-                               const std::vector<Ray>& rays, const std::vector<SeenSphere>& spheres = {});
+                               const std::vector<Ray>& rays, const std::vector<SeenLuminaire>& luminaires = {});
 
 /// Patch values as a smooth field, for display and for values at points.
 struct SmoothField {
@@ -78,7 +82,7 @@ struct RenderOptions {
   int height = 800;
   int rays_per_pixel_edge = 3;                               ///< squared per pixel, box filter
   std::function<Spectrum(const Vector&)> surroundings = {};  ///< radiance where nothing is met; none: black
-  std::vector<SeenSphere> spheres = {};
+  std::vector<SeenLuminaire> luminaires = {};
 };
 
 /// A picture of the solution by ray casting: the radiance in W/(m^2 sr) that reaches the camera, from the smoothed

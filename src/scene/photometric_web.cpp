@@ -191,6 +191,36 @@ double luminous_flux(const PhotometricWeb& web) {
   return flux * (std::numbers::pi / rings) * (std::numbers::pi / rings);
 }
 
+double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction) {
+  constexpr double quarter_pi = std::numbers::pi / 4;
+  // Width, length and height, and the cosines between the direction and each.
+  const Vector& sizes = web.opening;
+  const Vector cosines = Vector(direction.dot(frame.zero_plane.cross(frame.aim)), direction.dot(frame.zero_plane),
+                                direction.dot(frame.aim))
+                             .cwiseAbs();
+  // The projected area of an elliptical cylinder along an axis: its ends and its side.
+  const auto of_cylinder = [&](int axis) {
+    const int p = (axis + 1) % 3, q = (axis + 2) % 3;
+    return quarter_pi * sizes[p] * sizes[q] * cosines[axis] +
+           sizes[axis] * std::hypot(sizes[p] * cosines[q], sizes[q] * cosines[p]);
+  };
+  const Vector faces(sizes[1] * sizes[2] * cosines[0], sizes[0] * sizes[2] * cosines[1],
+                     sizes[0] * sizes[1] * cosines[2]);
+  switch (web.shape) {
+    case OpeningShape::box:
+      return faces.sum();
+    case OpeningShape::upright_cylinder:
+      return of_cylinder(2);
+    case OpeningShape::cylinder_by_length:
+      return of_cylinder(1);
+    case OpeningShape::cylinder_by_width:
+      return of_cylinder(0);
+    case OpeningShape::ellipsoid:
+      return quarter_pi * faces.norm();
+  }
+  return 0;
+}
+
 std::size_t perez_class(double clearness) {
   constexpr std::array<double, 7> limits = {1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
   return static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), clearness) - limits.begin());

@@ -59,6 +59,11 @@ double tilt_factor(const PhotometricWeb& web, double tilt_degrees);
 /// a degree.
 double luminous_flux(const PhotometricWeb& web);
 
+/// The area in m^2 of a luminaire's luminous opening (PhotometricWeb::opening) across a unit direction, as CIE 117:1995
+/// takes it for A_p; 0 of a point. Length lies along the zero plane, width across it, height along the aim (IES
+/// LM-63-02).
+double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
+
 /// The spectrum of a luminaire, const or not, to which its light is proportional.
 template <typename AnyLuminaire>
 auto& strength_of(AnyLuminaire& luminaire) {

@@ -9,6 +9,7 @@
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "render/camera.h"
+#include "views/solved_light.h"
 #include "visibility/occluder.h"
 
 #include <algorithm>
@@ -30,8 +31,6 @@ double index_below(double tangent) {
 
 // Parts of an opening across and along it, whose middles the eye sees or not.
 constexpr int parts = 4;
-
-constexpr double quarter_pi = std::numbers::pi / 4;
 
 using PartsSeen = std::array<Segment, static_cast<std::size_t>(parts) * parts>;
 
@@ -90,14 +89,20 @@ std::vector<GlareSource> luminaire_glare(const Scene& scene, const Occluder& fac
   return sources;
 }
 
+// Without measured luminaires, which are sources of their own.
+Image image_of_view(const Simulation& simulation, const Camera& camera, const Observer& observer) {
+  std::vector<Luminaire> luminaires = simulation.world->sensor_scene().luminaires;
+  std::erase_if(luminaires, [](const Luminaire& one) { return std::holds_alternative<WebLight>(one.light); });
+  return draft(simulation, camera, view_edge, view_edge, luminaires, observer);
+}
+
 View view_of(const Simulation& simulation, Camera camera, const Observer& observer) {
   const Scene& scene = simulation.world->scene();
   camera.projection = Projection::angular;
   camera.vertical_field_of_view = 180;
-  const Picture picture =
-      take_picture(simulation, {.camera = camera, .width = view_edge, .height = view_edge}, observer);
   const Vector up = picture_up(camera, scene.up, scene.north);
   const Lens lens(camera, up, view_edge, view_edge);
+  const Image image = image_of_view(simulation, camera, observer);
   const Vector forward = (camera.target - camera.eye).normalized();
   const Vector upward = (up - up.dot(forward) * forward).normalized();
   const Bands bands = bands_of(scene);
@@ -118,8 +123,8 @@ View view_of(const Simulation& simulation, Camera camera, const Observer& observ
       const double angle = std::acos(std::clamp(ray->direction.dot(forward), -1.0, 1.0));
       // Angles are in proportion to the distance from the middle: d omega = sin(angle) / angle dx dy.
       const double solid_angle = step * step * (angle > 0 ? std::sin(angle) / angle : 1);
-      all.push_back({ray->direction, luminance(picture.radiance.pixels.row(pixel), bands), solid_angle,
-                     picture.radiance.outlook[pixel] > 0.5});
+      all.push_back(
+          {ray->direction, luminance(image.pixels.row(pixel), bands), solid_angle, image.outlook[pixel] > 0.5});
       sum += all.back().luminance * solid_angle;
     }
   }
@@ -170,35 +175,6 @@ std::optional<double> unified_glare_rating(std::span<const GlareSource> sources,
     sum += std::pow(source.luminance / source.position_index, 2) * source.solid_angle;
   if (!(sum > 0 && background > 0)) return std::nullopt;
   return 8 * std::log10(0.25 / background * sum);
-}
-
-double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction) {
-  // Width, length and height, and the cosines between the direction and each.
-  const Vector& sizes = web.opening;
-  const Vector cosines = Vector(direction.dot(frame.zero_plane.cross(frame.aim)), direction.dot(frame.zero_plane),
-                                direction.dot(frame.aim))
-                             .cwiseAbs();
-  // The projected area of an elliptical cylinder along an axis: its ends and its side.
-  const auto of_cylinder = [&](int axis) {
-    const int p = (axis + 1) % 3, q = (axis + 2) % 3;
-    return quarter_pi * sizes[p] * sizes[q] * cosines[axis] +
-           sizes[axis] * std::hypot(sizes[p] * cosines[q], sizes[q] * cosines[p]);
-  };
-  const Vector faces(sizes[1] * sizes[2] * cosines[0], sizes[0] * sizes[2] * cosines[1],
-                     sizes[0] * sizes[1] * cosines[2]);
-  switch (web.shape) {
-    case OpeningShape::box:
-      return faces.sum();
-    case OpeningShape::upright_cylinder:
-      return of_cylinder(2);
-    case OpeningShape::cylinder_by_length:
-      return of_cylinder(1);
-    case OpeningShape::cylinder_by_width:
-      return of_cylinder(0);
-    case OpeningShape::ellipsoid:
-      return quarter_pi * faces.norm();
-  }
-  return 0;
 }
 
 std::vector<ObserverReading> read_observers(const Simulation& simulation, const std::vector<Camera>& cameras,

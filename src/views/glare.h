@@ -25,9 +25,4 @@ struct GlareSource {
 /// nothing without sources or background.
 std::optional<double> unified_glare_rating(std::span<const GlareSource> sources, double background);
 
-/// The area in m^2 of a luminaire's luminous opening (PhotometricWeb::opening) across a unit direction, as CIE 117:1995
-/// takes it for A_p; 0 of a point. Length lies along the zero plane, width across it, height along the aim (IES
-/// LM-63-02).
-double projected_opening(const PhotometricWeb& web, const LuminaireFrame& frame, const Vector& direction);
-
 }  // namespace patchlight

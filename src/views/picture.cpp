@@ -61,17 +61,19 @@ Eigen::VectorXd weight_of_pixels(const Image& image) {
 }
 
 // As it is shown on a display.
-Picture shown(GatheredImage taken, const Camera& camera, PictureColors colors, const Bands& bands) {
+Picture shown(GatheredImage taken, const Camera& camera, const PictureOptions& options, const Bands& bands) {
   const Image& image = taken.image;
   Picture picture{.image = {.width = image.width, .height = image.height, .pixels = {}}, .camera = camera};
   picture.unfinished = taken.unfinished;
   picture.reached_error = taken.error;
-  if (colors == PictureColors::natural) {
-    picture.exposure = exposure_for(image.pixels, weight_of_pixels(image), bands);
+  if (options.colors == PictureColors::natural) {
+    const double own = exposure_for(image.pixels, weight_of_pixels(image), bands);
+    picture.exposure = options.exposure.value_or(std::exp2(options.stops) * own);
     picture.image.pixels = tone_map(image.pixels, picture.exposure, bands);
   } else {
     const Eigen::VectorXd values = pixel_luminance(image, bands);
-    picture.brightest = end_of_scale(values.cwiseProduct(weight_of_pixels(image)));
+    const double own = end_of_scale(values.cwiseProduct(weight_of_pixels(image)));
+    picture.brightest = options.brightest.value_or(own);
     picture.image.pixels = false_color(values, 0, *picture.brightest);
     // At the numbers of the legend
     const double step = *picture.brightest / 4;
@@ -155,13 +157,13 @@ Picture take_picture(const Simulation& simulation, const PictureOptions& options
   const Occluder& occluder = simulation.world->all_faces();
   const Camera camera = options.camera ? *options.camera : view_of_brightest_room(scene, simulation, occluder);
   const Vector up = picture_up(camera, scene.up, scene.north);
-  const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
   const Scene& seen = simulation.world->sensor_scene();
-  const auto surroundings = surroundings_of(seen);
   GatheredImage taken;
   if (options.quality == PictureQuality::final) {
     const bool reflects_again = simulates(simulation.plan, Effect::interreflection);
     const SolvedLight light = solved_light(simulation);
+    const SmoothField radiance =
+        smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
     const Lens lens(camera, up, options.width, options.height);
     taken = final_gather(light, radiance, lens,
                          {.width = options.width,
@@ -170,17 +172,12 @@ Picture take_picture(const Simulation& simulation, const PictureOptions& options
                           .most_samples = options.most_samples,
                           .hemisphere = {.most_bounces = reflects_again ? HemisphereOptions().most_bounces : 0},
                           .seed = hash({simulation.plan.assembly.seed}),
-                          .surroundings = surroundings},
+                          .surroundings = surroundings_of(seen)},
                          observer);
   } else {
-    const RenderOptions fineness{.width = options.width,
-                                 .height = options.height,
-                                 .surroundings = surroundings,
-                                 .spheres = spheres_of(seen.luminaires)};
-    const SurfaceOptics& optics = *simulation.world->sensor_lighting().paths.optics();
-    taken.image = render(simulation.mesh, radiance, occluder, optics, camera, up, fineness, observer);
+    taken.image = draft(simulation, camera, options.width, options.height, seen.luminaires, observer);
   }
-  return shown(std::move(taken), camera, options.colors, bands_of(scene));
+  return shown(std::move(taken), camera, options, bands_of(scene));
 }
 
 Picture ambient_picture(const Scene& scene, const PictureOptions& options, double distance) {

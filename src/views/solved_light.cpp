@@ -92,14 +92,29 @@ SolvedLight solved_light(const Simulation& simulation) {
           .scene = &scene};
 }
 
+Image draft(const Simulation& simulation, const Camera& camera, int width, int height,
+            const std::vector<Luminaire>& luminaires, const Observer& observer) {
+  const Scene& scene = simulation.world->scene();
+  const Occluder& occluder = simulation.world->all_faces();
+  const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
+  const SurfaceOptics& optics = *simulation.world->sensor_lighting().paths.optics();
+  return render(simulation.mesh, radiance, occluder, optics, camera, picture_up(camera, scene.up, scene.north),
+                {.width = width,
+                 .height = height,
+                 .surroundings = surroundings_of(simulation.world->sensor_scene()),
+                 .luminaires = seen_luminaires(luminaires, scene.up)},
+                observer);
+}
+
 std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene) {
-  if (!scene.sky) return {};
+  if (!scene.sky && !scene.sun) return {};
   const double sun_cosine = std::cos(0.2665 * std::numbers::pi / 180);  // of the radius as seen from the earth
-  const SkyModel sky = sky_model(*scene.sky, scene.up);
-  return [sky, sun_cosine, sun = scene.sun](const Vector& direction) -> Spectrum {
-    Spectrum seen = radiance(sky, direction);
+  std::optional<SkyModel> sky;
+  if (scene.sky) sky = sky_model(*scene.sky, scene.up);
+  return [sky, sun_cosine, sun = scene.sun, up = scene.up, bands = number_of_bands(scene)](const Vector& direction) {
+    Spectrum seen = sky ? radiance(*sky, direction) : Spectrum::Zero(bands);
     // L = E / solid angle, 2 pi (1 - cos)
-    if (sun && direction.dot(sun->direction) > sun_cosine && direction.dot(sky.up) > 0)
+    if (sun && direction.dot(sun->direction) > sun_cosine && direction.dot(up) > 0)
       seen += sun->normal_irradiance / (2 * std::numbers::pi * (1 - sun_cosine));
     return seen;
   };

@@ -14,7 +14,11 @@ namespace patchlight {
 /// simulation, which must outlive it.
 SolvedLight solved_light(const Simulation& simulation);
 
-/// The radiance, W/(m^2 sr), of sky, ground and the disc of the sun in a unit direction; empty without a sky.
+/// The radiances of a draft picture in which these luminaires appear, W/(m^2 sr). \throws Canceled.
+Image draft(const Simulation& simulation, const Camera& camera, int width, int height,
+            const std::vector<Luminaire>& luminaires, const Observer& observer);
+
+/// The radiance, W/(m^2 sr), of sky, ground and the disc of the sun in a unit direction; empty without sky and sun.
 std::function<Spectrum(const Vector&)> surroundings_of(const Scene& scene);
 
 /// That of sky and ground alone, as sensors of a solved scene see them: as far as the plan has them.

@@ -6,6 +6,7 @@ import signal
 import struct
 import subprocess
 import unittest
+import zlib
 
 from support import TOOL, ToolTest
 
@@ -131,6 +132,55 @@ class RenderTest(ToolTest):
         self.assertEqual(view.split(",")[1:], camera.split(",")[1:])
         self.assertFalse(list(self.folder.glob("*.png")))
 
+    def srgb(self, *words):
+        """The colors of an image, row by row, and its exposure."""
+        self.good("render", *words, "--picture-quality", "draft", "--size", "24x16", "-o", "shown.png", "-q")
+        return self.shown("shown.png")
+
+    def shown(self, name):
+        data = self.bytes_of(name)
+        at, parts, exposure = 8, b"", None
+        while at < len(data):
+            size, = struct.unpack(">I", data[at:at + 4])
+            kind, content = data[at + 4:at + 8], data[at + 8:at + 8 + size]
+            parts += content if kind == b"IDAT" else b""
+            if kind == b"tEXt" and content.startswith(b"Exposure"):
+                exposure = float(content.split(b"\0")[1].split()[0])
+            at += 12 + size
+        return zlib.decompress(parts), exposure
+
+    def test_an_exposure_given_is_that_of_the_image(self):
+        self.solve()
+        of_room = ["room.obj", "--solution", "room.vtp"]
+        pixels, automatic = self.srgb(*of_room)
+        self.assertEqual(self.srgb(*of_room, "--exposure", repr(automatic)), (pixels, automatic))
+        for stops, factor in (("+1", 2), ("-2", 0.25), ("+0", 1)):
+            other, exposure = self.srgb(*of_room, "--exposure", stops)
+            self.assertEqual(exposure, factor * automatic)
+            self.assertEqual(self.srgb(*of_room, "--exposure", repr(exposure)), (other, exposure))
+            self.assertEqual(other == pixels, factor == 1)
+
+    def test_views_of_a_run_have_one_exposure_and_one_scale(self):
+        self.write("scene.toml", SCENE)
+        self.good("solve", "scene.toml", "--patches", "200", "-o", "scene.vtp", "-q")
+        of_scene = ["scene.toml", "--solution", "scene.vtp"]
+        near = self.srgb(*of_scene, "--view", "near")
+        plan = self.srgb(*of_scene, "--view", "plan")
+        self.assertNotEqual(near[1], plan[1])
+        both = ["render", *of_scene, "--view", "near", "--view", "plan", "--picture-quality", "draft", *SMALL]
+        self.good(*both, "-o", "own.png", "--exposure", "each")
+        self.assertEqual([self.shown("own.near.png"), self.shown("own.plan.png")], [near, plan])
+        self.good(*both, "-o", "room.png")
+        self.assertEqual(self.shown("room.near.png"), near)
+        self.assertEqual(self.shown("room.plan.png"), self.srgb(*of_scene, "--view", "plan", "--exposure", repr(near[1])))
+        # A scale of colors that is given, and that of the first
+        self.good(*both, "-o", "given.png", "--false-color", "luminance:1")
+        alone = self.srgb(*of_scene, "--view", "plan", "--false-color", "luminance:1")
+        self.assertEqual(self.shown("given.plan.png"), alone)
+        self.good(*both, "-o", "first.png", "--false-color", "luminance")
+        self.assertEqual(self.shown("first.near.png"), self.srgb(*of_scene, "--view", "near", "--false-color", "luminance"))
+        self.assertNotEqual(self.shown("first.plan.png"), alone)
+
     def test_an_error_that_is_not_reached_is_told_with_how_to_mend_it(self):
         self.solve()
         words = ["render", "room.obj", "--solution", "room.vtp", "-o", "room.exr", "--size", "24x16"]
@@ -187,6 +237,12 @@ class RenderTest(ToolTest):
             (["-o", "a.png", "--picture-quality", "draft", "--picture-error", "1%"], "--picture-error"),
             (["-o", "a.hdr", "--false-color", "luminance"], "--false-color"),
             (["-o", "a.png", "--projection", "panorama"], "--projection"),
+            (["-o", "a.exr", "--exposure", "2"], "--exposure"),
+            (["-o", "a.png", "--exposure", "0"], "--exposure"),
+            (["-o", "a.png", "--exposure", "+bright"], "--exposure"),
+            (["-o", "a.png", "--exposure", "2", "--false-color", "luminance"], "luminance:END"),
+            (["-o", "a.png", "--false-color", "luminance:0"], "--false-color"),
+            (["--observers", "a.csv", "--exposure", "2"], "--exposure"),
             (["-o", "a.png", "--view", "one/two", "--view", "one:two"], "-o"),
             (["-o", "a.png", "--view", "one", "--view", "two", "--picture-error-map", "../{}/a.png"], "--picture-error-map"),
             (["-o", "a.png", "--camera", "0,0,1", "1,0,1", "190"], "--camera"),

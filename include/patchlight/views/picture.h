@@ -12,8 +12,8 @@ namespace patchlight {
 
 /// The meaning of the colors of a picture.
 enum class PictureColors : std::uint8_t {
-  natural,   ///< as it looks, exposed for its own light
-  luminance  ///< false colors from 0 to a round number of cd/m^2
+  natural,   ///< as it looks
+  luminance  ///< false colors from 0 to a number of cd/m^2
 };
 
 /// The source of the light in a picture.
@@ -26,6 +26,9 @@ enum class PictureQuality : std::uint8_t {
 struct PictureOptions {
   std::optional<Camera> camera = {};  ///< in meters; none: a view that shows most of the scene
   PictureColors colors = PictureColors::natural;
+  std::optional<double> exposure = {};   ///< Picture::exposure; none: by the light of the picture itself
+  double stops = 0;                      ///< brighter than that, in powers of two; not with `exposure`
+  std::optional<double> brightest = {};  ///< Picture::brightest; none: a round number for the picture itself
   int width = 800;   ///< pixels
   int height = 800;  ///< pixels
   PictureQuality quality = PictureQuality::draft;

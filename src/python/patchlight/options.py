@@ -35,7 +35,7 @@ OF_WRITING = {
     **dict.fromkeys(("o", "output", "ambient_occlusion"), "solved.write(FILE)"),
     "html": "solved.write_page(FILE)",
     **dict.fromkeys(("json", "report"), "solved.report()"),
-    **dict.fromkeys(("picture", "camera", "projection", "view", "size", "picture_quality", "quality", "false_color", "picture_error",
+    **dict.fromkeys(("picture", "camera", "projection", "view", "size", "picture_quality", "quality", "exposure", "false_color", "picture_error",
                      "picture_samples", "picture_error_map"), "solved.picture(...)"),
     **dict.fromkeys(("points_output", "map", "map_range"), "solved.sensors()"),
     **dict.fromkeys(("series", "lightmap", "texel", "form_factors", "checkpoint", "discard", "quiet", "verbose", "q", "v"),

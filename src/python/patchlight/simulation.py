@@ -24,7 +24,7 @@ def picture(self, **options):
     """An image: "srgb" (rows x columns x 3, 8 bits), "radiance" in W/(m^2 sr), "exposure".
 
     Options of the tool: camera=((x, y, z), (x, y, z), degrees), view, quality, size="WIDTHxHEIGHT",
-    false_color="luminance".
+    exposure=first["exposure"], false_color="luminance".
     """
     return self._picture(picture_arguments_of(options))
 

@@ -5,11 +5,15 @@
 #include "base/parallel.h"
 #include "mesh/interpolate.h"
 #include "quad_scene.h"
+#include "scene/photometric_web.h"
 #include "visibility/occluder.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace patchlight::render_test {
 namespace {
@@ -163,6 +167,94 @@ TEST(Render, LooksStraightUp) {
   const RenderOptions options{.width = 11, .height = 11, .rays_per_pixel_edge = 1};
   const Camera camera{Point(0, 0, 0), Point(0, 0, 1), 30};
   EXPECT_NEAR(picture_of(scene, Field::Constant(1, 1, 1), camera, options).pixels.minCoeff(), 1, 1e-12);
+}
+
+TEST(Render, ASphericalLuminaireHasItsExitanceOverPi) {
+  const Scene scene = quad_scene({upright_square({0, 9, 0})});
+  const Luminaire globe{.name = "globe", .place = "", .position = {0, 3, 0}, .light = SphericalLamp{0.4, rgb(2, 3, 5)}};
+  const RenderOptions options{.width = 21, .height = 21, .luminaires = seen_luminaires({globe}, Vector::UnitZ())};
+  const Image image = picture_of(scene, Field::Zero(1, 3), camera_along_y(10), options);
+  for (Eigen::Index band = 0; band < 3; ++band)
+    EXPECT_NEAR(image.pixels(10 * 21 + 10, band), rgb(2, 3, 5)[band] / std::numbers::pi, 1e-12);
+}
+
+// An IES luminaire whose intensity depends on both angles and is 0 above 120 degrees from its aim.
+Luminaire web_luminaire(OpeningShape shape, const Vector& opening) {
+  PhotometricWeb web;
+  web.vertical = {0, 60, 120};
+  web.horizontal = {0, 90};
+  web.candela = {400, 300, 100, 400, 200, 50};
+  web.opening = opening;
+  web.shape = shape;
+  const Vector aim = Vector(0.3, 0.2, -1).normalized();
+  return {.name = "panel",
+          .place = "",
+          .position = {0.1, 0.2, 0.3},
+          .aim = aim,
+          .zero_plane = aim.unitOrthogonal(),
+          .light = WebLight{std::make_shared<const PhotometricWeb>(web), rgb(1, 2, 3) / 179}};
+}
+
+// A picture of a luminaire alone from a direction, by parallel rays.
+Image parallel_view(const Luminaire& luminaire, const Vector& direction, int edge, double height) {
+  const Scene scene = quad_scene({upright_square({0, 90, 0})});
+  const Point eye = luminaire.position + 5 * direction;
+  const Camera camera{.eye = eye,
+                      .target = luminaire.position,
+                      .vertical_field_of_view = 50,
+                      .projection = Projection::orthographic,
+                      .height = height};
+  const RenderOptions options{
+      .width = edge, .height = edge, .luminaires = seen_luminaires({luminaire}, Vector::UnitZ())};
+  return picture_of(scene, Field::Zero(1, 3), camera, options);
+}
+
+// I = integral of L over the projected area.
+TEST(Render, AnOpeningSendsItsIntensityInEachDirection) {
+  using enum OpeningShape;
+  const std::vector<std::pair<OpeningShape, Vector>> openings = {{box, {0.6, 1.2, 0}},
+                                                                 {box, {0.6, 1.2, 0.3}},
+                                                                 {upright_cylinder, {0.5, 0.5, 0}},
+                                                                 {ellipsoid, {1, 1, 1}},
+                                                                 {upright_cylinder, {0.5, 1, 0.4}},
+                                                                 {cylinder_by_length, {0.2, 1.2, 0.3}},
+                                                                 {cylinder_by_width, {1.2, 0.2, 0.3}}};
+  for (const auto& [shape, opening] : openings) {
+    const Luminaire luminaire = web_luminaire(shape, opening);
+    const WebLight& light = std::get<WebLight>(luminaire.light);
+    for (const Vector& direction : {Vector(0.1, 0.2, -1), Vector(1, 0.3, -0.4), Vector(-0.2, -1, 0.1)}) {
+      const Vector towards = direction.normalized();
+      const double candelas = candela(*light.web, {luminaire.aim, luminaire.zero_plane}, towards);
+      const Image image = parallel_view(luminaire, towards, 200, 2);
+      for (Eigen::Index band = 0; band < 3; ++band) {
+        const double intensity = image.pixels.col(band).sum() * (2.0 / 200) * (2.0 / 200);
+        EXPECT_NEAR(intensity, candelas * light.watts_per_lumen[band], 0.01 * intensity);
+      }
+    }
+  }
+}
+
+TEST(Render, AnOpeningIsSeenOnlyWhereItShines) {
+  const Luminaire panel = web_luminaire(OpeningShape::box, {0.6, 0.6, 0});
+  const Scene scene = quad_scene({upright_square({0, 5, 0})});
+  Luminaire turned = panel;
+  turned.position = {0, 2, 0};
+  turned.zero_plane = Vector::UnitX();
+  for (const double away : {1.0, -1.0}) {
+    turned.aim = away * Vector::UnitY();
+    const RenderOptions options{.width = 21, .height = 21, .luminaires = seen_luminaires({turned}, Vector::UnitZ())};
+    const Image image = picture_of(scene, Field::Constant(1, 3, 7), camera_along_y(10), options);
+    // 400 cd from 0.36 m^2, less by 1.7 cd per degree from the axis, or the square behind
+    EXPECT_NEAR(image.pixels(10 * 21 + 10, 0), away > 0 ? 7 : 400 / 179.0 / 0.36, 0.01);
+  }
+}
+
+TEST(Render, LuminairesWithoutASizeAreNotSeen) {
+  Luminaire lamp = web_luminaire(OpeningShape::box, Vector::Zero());
+  const Image of_web = parallel_view(lamp, -Vector::UnitZ(), 21, 1e-3);
+  lamp.light = PointLight{rgb(1, 1, 1)};
+  const Image of_point = parallel_view(lamp, -Vector::UnitZ(), 21, 1e-3);
+  EXPECT_EQ(of_web.pixels.sum() + of_point.pixels.sum(), 0);
 }
 
 TEST(Render, CanBeCancelled) {
