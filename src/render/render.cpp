@@ -214,7 +214,7 @@ std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& op
            return Continuation::ends;
          }
          seen.patch = lookup.patch_at(hit->polygon, hit->side, hit->point);
-         if (!seen.patch) return Continuation::straight;
+         if (!seen.patch) return optics.is_clear(hit->polygon) ? Continuation::specular : Continuation::straight;
          seen.point = hit->point;
          seen.distance = path.distance + hit->distance;
          seen.share *= occluder.nonspecular_profile(hit->polygon, hit->direction);
