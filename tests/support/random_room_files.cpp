@@ -41,15 +41,33 @@ std::string format_array(const Vector& vector) {
   return text.str();
 }
 
+// Texture coordinates of a corner: meters along the first edge of its face and across.
+std::string texture_place(const RoomFace& face, const Point& corner) {
+  const Vector along = (face.corners[1] - face.corners[0]).normalized();
+  const Vector across = (face.corners[2] - face.corners[1]).normalized();
+  const Vector from = corner - face.corners[0];
+  return "vt " + format(from.dot(along)) + " " + format(from.dot(across)) + "\n";
+}
+
+bool has_texture(const RandomRoom& room, const std::string& name) {
+  return std::any_of(room.materials.begin(), room.materials.end(),
+                     [&](const RoomMaterial& material) { return material.has_texture && material.name == name; });
+}
+
 std::string obj_text(const RandomRoom& room) {
   const Pose pose(room);
   std::ostringstream text;
   text << "mtllib " << room.name << ".mtl\n";
-  std::size_t vertices = 0;
+  std::size_t vertices = 0, places = 0;
   for (const RoomFace& face : room.faces) {
-    for (const Point& corner : face.corners) text << "v " << format(pose.point(corner), " ") << "\n";
+    const bool textured = has_texture(room, face.material);
+    for (const Point& corner : face.corners)
+      text << "v " << format(pose.point(corner), " ") << "\n" << (textured ? texture_place(face, corner) : "");
     text << "g " << face.group << "\nusemtl " << face.material << "\nf";
-    for (std::size_t k = 0; k < face.corners.size(); ++k) text << " " << ++vertices;
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      text << " " << ++vertices;
+      if (textured) text << "/" << ++places;
+    }
     text << "\n";
   }
   return text.str();
@@ -61,6 +79,7 @@ std::string mtl_text(const RandomRoom& room) {
     const auto& [r, g, b] = material.reflectance;
     const std::string e = format(material.exitance / std::numbers::pi);  // Ke is a radiance
     text << "newmtl " << material.name << "\nKd " << format(r) << " " << format(g) << " " << format(b) << "\n";
+    if (material.has_texture) text << "map_Kd " << room.name << ".ppm\n";
     if (material.exitance > 0) text << "Ke " << e << " " << e << " " << e << "\n";
   }
   return text.str();
@@ -156,6 +175,13 @@ std::string ies_text() {
          "\n0\n" + candela.str() + "\n";
 }
 
+// A board of 8 x 8 squares in two colors.
+std::string ppm_text() {
+  std::string text = "P6\n8 8\n255\n";
+  for (int k = 0; k < 64; ++k) text += (k + k / 8) % 2 == 0 ? "\xff\xff\xff" : "\xb0\x90\x70";
+  return text;
+}
+
 void write_text(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
   stream << text;
@@ -173,6 +199,8 @@ std::filesystem::path write_random_room(const RandomRoom& room, const std::files
   write_text(with(".toml"), toml_text(room));
   const auto is_measured = [](const RoomLuminaire& lamp) { return lamp.kind == "ies"; };
   if (std::any_of(room.luminaires.begin(), room.luminaires.end(), is_measured)) write_text(with(".ies"), ies_text());
+  const auto is_textured = [](const RoomMaterial& material) { return material.has_texture; };
+  if (std::any_of(room.materials.begin(), room.materials.end(), is_textured)) write_text(with(".ppm"), ppm_text());
   return with(".toml");
 }
 

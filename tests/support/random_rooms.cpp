@@ -520,7 +520,8 @@ void add_upright(Draft& draft, const RoomMaterial& material) {
   }
 }
 
-// A colored pane, a colored mirror and a sheet in the room, each with some probability, and often a tinted window.
+// A colored pane, a colored mirror and a sheet in the room, each with some probability, and often a tinted window
+// and a textured floor.
 void add_optics(Draft& draft) {
   Dice& dice = draft.dice;
   const auto tint = [&] {
@@ -532,10 +533,13 @@ void add_optics(Draft& draft) {
     add_upright(draft, {.name = "color_pane", .transmittance = dice.between(0.6, 0.9), .tint = tint()});
   if (dice.chance(0.4))
     add_upright(draft, {.name = "color_mirror", .specular_reflectance = dice.between(0.7, 0.95), .tint = tint()});
-  if (!dice.chance(0.6)) return;
-  const double back = dice.between(0.2, 0.5);
-  add_upright(draft,
-              {.name = "sheet", .reflectance = {back, back, back}, .diffuse_transmittance = dice.between(0.2, 0.45)});
+  if (dice.chance(0.6)) {
+    const double back = dice.between(0.2, 0.5);
+    add_upright(draft,
+                {.name = "sheet", .reflectance = {back, back, back}, .diffuse_transmittance = dice.between(0.2, 0.45)});
+  }
+  for (RoomMaterial& material : draft.room.materials)
+    if (material.name == "floor") material.has_texture = dice.chance(0.5);
 }
 
 // Nine sensors on a work plane, four near walls, one that faces a distant wall, one near the ceiling that faces down.

@@ -29,6 +29,7 @@ struct RoomMaterial {
   double specular_reflectance = 0;
   double diffuse_transmittance = 0;
   std::array<double, 3> tint{1, 1, 1};  ///< factors of transmittance and specular reflectance per band
+  bool has_texture = false;             ///< dark and light squares multiply the reflectance
 };
 
 /// A lamp without a polygon.
@@ -79,14 +80,14 @@ std::vector<std::string> lamp_kinds();
 /// The surfaces in a room besides those of its kind.
 enum class RoomOptics : std::uint8_t {
   plain,  ///< none
-  mixed   ///< colored panes, mirrors and sheets that stand in the room, and often tinted windows
+  mixed   ///< colored panes, mirrors and sheets that stand in the room, and often tinted windows and a textured floor
 };
 
 /// Room number `number` of a kind. The same arguments give the same room.
 RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed,
                             RoomOptics optics = RoomOptics::plain);
 
-/// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies. Returns the path of the TOML file.
+/// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies; for textures .ppm. Returns the path of the TOML file.
 std::filesystem::path write_random_room(const RandomRoom& room, const std::filesystem::path& folder);
 
 }  // namespace patchlight::test
