@@ -551,11 +551,12 @@ std::vector<RandomRoom> make_rooms(const Options& options) {
 // One line for each comparison in which two of sensor, pixel and path differ by more than three standard errors.
 void print_outliers(const std::vector<PixelComparison>& comparisons) {
   for (const PixelComparison& c : comparisons) {
-    const double sensor = (c.sensor - c.path) / std::hypot(c.sensor_error, c.path_error);
-    const double pixel = (c.pixel - c.path) / std::hypot(c.pixel_error, c.sensor_error, c.path_error);
-    if (!(std::abs(sensor) > 3 || std::abs(pixel) > 3) || c.kind == "elsewhere") continue;
-    std::printf("  %s  sensor %.5g +- %.2g  pixel %.5g +- %.2g  path %.5g +- %.2g  z %+.1f %+.1f\n", c.place.c_str(),
-                c.sensor, c.sensor_error, c.pixel, c.pixel_error, c.path, c.path_error, sensor, pixel);
+    const double rounding = 1e-6 * c.path;
+    const double sensor = (c.sensor - c.path) / std::hypot(c.sensor_error, c.path_error, rounding);
+    const double pixel = (c.pixel - c.path) / std::hypot(c.pixel_error, c.sensor_error + rounding, c.path_error);
+    if (!(std::abs(sensor) > 3 || std::abs(pixel) > 3)) continue;
+    std::printf("  %s %s  sensor %.5g +- %.2g  pixel %.5g +- %.2g  path %.5g +- %.2g  z %+.1f %+.1f\n", c.kind.c_str(),
+                c.place.c_str(), c.sensor, c.sensor_error, c.pixel, c.pixel_error, c.path, c.path_error, sensor, pixel);
   }
 }
 
