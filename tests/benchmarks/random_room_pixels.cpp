@@ -17,6 +17,9 @@ namespace {
 // Pictures of each place, for their scatter.
 constexpr std::uint32_t pictures = 16;
 
+// Places with less light than this share of the room's mean do not count: too few paths find it to show a scatter.
+constexpr double least_share = 1e-3;
+
 std::string text_of(const test::SurfacePlace& place, Eigen::Index band) {
   const auto& [point, normal] = place.sensor;
   std::array<char, 160> text{};
@@ -83,11 +86,13 @@ std::vector<PixelComparison> compare_pixels(const test::RandomRoom& room, const 
                                                {.paths = paths, .seed = seed, .follows_reflections = follows});
   std::vector<PixelComparison> all;
   for (Eigen::Index k = 0; k < readings.irradiance.rows(); ++k)
-    for (Eigen::Index band = 0; band < readings.irradiance.cols(); ++band)
+    for (Eigen::Index band = 0; band < readings.irradiance.cols(); ++band) {
+      if (!(traced.irradiance(k, band) > least_share * traced.irradiance.mean())) continue;
       all.push_back({room.name, chosen[static_cast<std::size_t>(k)].counts ? room.kind : "elsewhere",
                      text_of(chosen[static_cast<std::size_t>(k)], band), readings.irradiance(k, band),
                      readings.standard_error(k, band), readings.errors.rays(k, band), pixels.irradiance(k, band),
                      pixels.standard_error(k, band), traced.irradiance(k, band), traced.standard_error(k, band)});
+    }
   return all;
 }
 

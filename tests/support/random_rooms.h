@@ -87,7 +87,8 @@ enum class RoomOptics : std::uint8_t {
 RandomRoom make_random_room(const std::string& kind, std::size_t number, std::uint64_t seed,
                             RoomOptics optics = RoomOptics::plain);
 
-/// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies; for textures .ppm. Returns the path of the TOML file.
+/// Writes the room as `name`.toml, .obj, .mtl and, for lamps of kind "ies", .ies; for textures .ppm. Returns the path
+/// of the TOML file.
 std::filesystem::path write_random_room(const RandomRoom& room, const std::filesystem::path& folder);
 
 }  // namespace patchlight::test
