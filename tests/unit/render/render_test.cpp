@@ -264,8 +264,8 @@ TEST(Render, CanBeCancelled) {
     return false;
   };
   const Occluder occluder(scene);
-  EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, 1, 1), CornerWeights::Ones(1, 4)}, occluder,
-                      occluder.optics(), camera_along_y(50), Vector::UnitZ(), {}, stop),
+  EXPECT_THROW(render(front_patches(scene), {Field::Constant(4, number_of_bands(scene), 1), CornerWeights::Ones(1, 4)},
+                      occluder, occluder.optics(), camera_along_y(50), Vector::UnitZ(), {}, stop),
                Canceled);
 }
 
