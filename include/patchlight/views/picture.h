@@ -29,8 +29,8 @@ struct PictureOptions {
   std::optional<double> exposure = {};   ///< Picture::exposure; none: by the light of the picture itself
   double stops = 0;                      ///< brighter than that, in powers of two; not with `exposure`
   std::optional<double> brightest = {};  ///< Picture::brightest; none: a round number for the picture itself
-  int width = 800;   ///< pixels
-  int height = 800;  ///< pixels
+  int width = 800;                       ///< pixels
+  int height = 800;                      ///< pixels
   PictureQuality quality = PictureQuality::draft;
   double error = 0.01;  ///< of a final picture: wanted standard error of a pixel's luminance, as a share of it or of a
                         ///< twentieth of the luminance below which nine of ten pixels stay
