@@ -142,9 +142,10 @@ std::vector<Ray> Gather::hemisphere_rays(PatchIndex patch) const {
   for (std::size_t q = 0; q < 4; ++q) {
     const QuadPoints points(quarter_of(corners, static_cast<int>(q)).points);
     for (const auto& sample : samples)
-      rays.push_back({points.at(sample[0], sample[1]),
-                      frame * occluder_.sample_nonspecular_direction(mesh_.polygon[patch], sample[2], sample[3]),
-                      mesh_.polygon[patch]});
+      rays.push_back(
+          {points.at(sample[0], sample[1]),
+           frame * occluder_.optics().sample_nonspecular_direction(mesh_.polygon[patch], sample[2], sample[3]),
+           mesh_.polygon[patch]});
   }
   return rays;
 }
@@ -177,7 +178,7 @@ Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays
     const auto& sample = samples[k % samples.size()];
     const auto [lamp, probability, u] = choice.at(sample[0]);
     const PatchCorners corners = mesh_.corner_points(lamp);
-    const double nonspecular = occluder_.nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
+    const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
     const double factor = point_to_polygon(rays[k].origin, mesh_.normal[patch], corners);
     irradiance.row(static_cast<Eigen::Index>(k)) = factor * nonspecular / probability * exitance_.row(lamp);
     const Point to = square_to_quad(corners.points, u, sample[1]);
@@ -211,7 +212,7 @@ double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const 
   const double geometry = geometry_term(point, mesh_.normal[patch], to, mesh_.normal[lamp]);
   if (!(geometry > 0)) return 0;
   const Segment segment{point, to, mesh_.polygon[patch], mesh_.polygon[lamp]};
-  const double nonspecular = occluder_.nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
+  const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
   return exitance_.row(lamp).sum() * nonspecular * geometry * mesh_.area[lamp] / probability *
          part_by_shadow_rays(choice, lamp, geometry) *
          static_cast<double>(occluder_.transmittance({&segment, 1}).front());
@@ -246,7 +247,8 @@ double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) 
   std::vector<Ray> rays;
   for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
     if (!lamps_.empty()) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
-    rays.push_back({point, frame * occluder_.sample_nonspecular_direction(mesh_.polygon[patch], sample[0], sample[1]),
+    rays.push_back({point,
+                    frame * occluder_.optics().sample_nonspecular_direction(mesh_.polygon[patch], sample[0], sample[1]),
                     mesh_.polygon[patch]});
   }
   for (const Seen& seen : sights_.of_rays(patch, rays, key))

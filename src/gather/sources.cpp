@@ -160,7 +160,7 @@ std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint3
            if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
              found.push_back(
                  {*patch, r, hit->point, path.distance + hit->distance, form_factor,
-                  form_factor * occluder_.nonspecular_profile(hit->polygon, hit->direction) * path.throughput,
+                  form_factor * occluder_.optics().nonspecular_profile(hit->polygon, hit->direction) * path.throughput,
                   path.reflections > 0});
            return Continuation::specular;
          });
@@ -222,7 +222,8 @@ std::vector<VisibleShare> ShadowRays::visible_shares(const Sensor& sensor, std::
         replicates[r].reached += reached * Eigen::Vector4d(1, way.x(), way.y(), way.z());
         if (by_band.size() == 0 || !(reached > 0)) continue;
         const Segment& segment = segments[ray];
-        const double sent = occluder_.nonspecular_profile(segment.to_polygon, (segment.to - segment.from).normalized());
+        const double sent =
+            occluder_.optics().nonspecular_profile(segment.to_polygon, (segment.to - segment.from).normalized());
         replicates[r].by_band += weights[ray] * sent * by_band.row(static_cast<Eigen::Index>(ray));
       }
     }

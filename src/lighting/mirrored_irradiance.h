@@ -22,8 +22,8 @@ struct Mirrors {
 };
 
 /// Mean irradiance of every patch by light of luminaires, sun, sky and these lamps that gets there by way of mirrors
-/// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, of the sky over up to
-/// most_mirrors. `lighting` must have mirrors; it is sampled as direct_irradiance() samples.
+/// and clear faces, where reflections are followed: over the chains of Lighting::mirrors, or along random paths
+/// for the sky. `lighting` must have mirrors; it is sampled as direct_irradiance() samples.
 /// docs/theory/panes-mirrors-sheets.md. O(patches x chains x lights x mirrored_samples). \throws Canceled.
 DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
                                      const LightingOptions& options = {}, const Observer& observer = {});

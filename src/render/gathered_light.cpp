@@ -291,7 +291,7 @@ std::vector<GatheredLight::Stop> GatheredLight::stops_of(std::vector<Ray> rays, 
          if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
            stops.push_back({path.start, *patch, hit->point, path.distance + hit->distance,
                             is_specular || path.reflections > 0,
-                            path.throughput * occluder.nonspecular_profile(hit->polygon, hit->direction)});
+                            path.throughput * occluder.optics().nonspecular_profile(hit->polygon, hit->direction)});
          return Continuation::specular;
        });
   return stops;

@@ -217,7 +217,7 @@ std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& op
          if (!seen.patch) return optics.is_clear(hit->polygon) ? Continuation::specular : Continuation::straight;
          seen.point = hit->point;
          seen.distance = path.distance + hit->distance;
-         seen.share *= occluder.nonspecular_profile(hit->polygon, hit->direction);
+         seen.share *= occluder.optics().nonspecular_profile(hit->polygon, hit->direction);
          all.push_back(seen);
          return Continuation::specular;
        });

@@ -269,8 +269,8 @@ AssemblyCounts PairLoop::trace(const std::vector<Drawn>& pairs, ExchangeAreas& S
     const auto count = static_cast<double>(pair.samples.size());
     const SampleMeans means{sums.visible / count, sums.blocked / count, sums.unoccluded / count};
     const auto [i, j] = pair.patches;
-    const double nonspecular = occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]) *
-                               occluder.nonspecular_fraction(mesh.polygon[j], mesh.side[j]);
+    const double nonspecular = occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i]) *
+                               occluder.optics().nonspecular_fraction(mesh.polygon[j], mesh.side[j]);
     S.set(i, j, narrow_toward_zero(nonspecular * estimator.use(shapes[i], shapes[j], means)));
     counts.partial_pairs += sums.visible > 0 && sums.blocked > 0 ? 1 : 0;
     counts.blocked_pairs += sums.visible == 0 && sums.blocked > 0 ? 1 : 0;
@@ -371,8 +371,8 @@ Arrivals Hemisphere::arrivals(PatchIndex from, const std::vector<std::array<doub
     const auto& [u, v, s, t] = points[k];
     const Point start = square_to_quad(corners.points, u, v);
     if (!occluder.is_covered(mesh.polygon[from], mesh.side[from], start)) {
-      rays.push_back(
-          {start, frame * occluder.sample_nonspecular_direction(mesh.polygon[from], s, t), mesh.polygon[from]});
+      rays.push_back({start, frame * occluder.optics().sample_nonspecular_direction(mesh.polygon[from], s, t),
+                      mesh.polygon[from]});
     }
     if (rays.size() < rays_at_once && k + 1 < points.size()) continue;
     for (const auto& hit : occluder.sample_nonspecular_hits(rays, hash({seed, k}))) {
@@ -402,7 +402,7 @@ Assembly estimate_by_hemisphere(const PatchMesh& mesh, const Occluder& occluder,
     for (const auto& [j, count] : arrived[i]) {
       const double before = static_cast<double>(result.exchange_areas.at(i, j));
       result.counts.facing_pairs += before == 0 ? 1 : 0;
-      const double nonspecular = occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
+      const double nonspecular = occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
       const double area = before + nonspecular * mesh.area[i] * count / (2.0 * options.samples);
       result.exchange_areas.set(i, j, narrow_toward_zero(area));
     }

@@ -67,7 +67,7 @@ std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, co
       const PatchShape shape = patch_shape(corners);
       key = hash(key);
       pieces.push_back({shape, sampled_patch(shape, polygon, occluder.frame()),
-                        occluder.nonspecular_fraction(polygon, side), key, lamp});
+                        occluder.optics().nonspecular_fraction(polygon, side), key, lamp});
     }
   }
   return pieces;
@@ -208,7 +208,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   if (rays[0].seen + rays[1].seen > 0) pair.unoccluded = piece.nonspecular * unoccluded(patch, piece);
   // A clear patch may scatter or absorb all light at some angle.
   const double most =
-      pair.unoccluded / (piece.nonspecular * occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]));
+      pair.unoccluded / (piece.nonspecular * occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i]));
   for (std::size_t half = 0; half < 2; ++half) {
     pair.form_factor[half] = form_factor_by(rays[half], pair.unoccluded, piece.nonspecular * piece.shape.area, most);
     pair.bin[half] = Pool::bin(rays[half].visible_share());

@@ -68,8 +68,8 @@ std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups
     const auto& start = samples[k / static_cast<std::size_t>(size)];
     rays.push_back({square_to_quad(corners.points, start[0], start[1]),
                     frame * (ends_at_specular ? square_to_cosine_hemisphere(samples[k][2], samples[k][3])
-                                              : occluder.sample_nonspecular_direction(mesh.polygon[patch],
-                                                                                      samples[k][2], samples[k][3])),
+                                              : occluder.optics().sample_nonspecular_direction(
+                                                    mesh.polygon[patch], samples[k][2], samples[k][3])),
                     mesh.polygon[patch]});
   }
   return rays;
@@ -152,7 +152,7 @@ Eigen::ArrayXd rays_of_patches(const LostShare& lost, PatchIndex patches) {
 Eigen::VectorXd clear_shares(const PatchMesh& mesh, const Occluder& occluder) {
   Eigen::VectorXd clear(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i)
-    clear[i] = 1 - occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
+    clear[i] = 1 - occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i]);
   return clear.isZero(0) ? Eigen::VectorXd() : clear;
 }
 

@@ -96,7 +96,7 @@ std::vector<float> nonspecular_fractions(const PatchMesh& mesh, const Occluder& 
   std::vector<float> nonspecular;
   nonspecular.reserve(mesh.size());
   for (PatchIndex i = 0; i < mesh.size(); ++i)
-    nonspecular.push_back(static_cast<float>(occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i])));
+    nonspecular.push_back(static_cast<float>(occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i])));
   return nonspecular;
 }
 
@@ -300,7 +300,7 @@ ClusterHull hull_of(const PatchCluster& cluster, const PatchMesh& mesh, const st
     const std::span<const Point> patch = shapes[i].corners;
     corners.insert(corners.end(), patch.begin(), patch.end());
     hull.is_covered |= occluder.is_covered_in_part(mesh.polygon[i], mesh.side[i]);
-    hull.is_clear |= occluder.nonspecular_fraction(mesh.polygon[i], mesh.side[i]) < 1;
+    hull.is_clear |= occluder.optics().nonspecular_fraction(mesh.polygon[i], mesh.side[i]) < 1;
     hull.polygons.push_back(mesh.polygon[i]);
   }
   hull.slabs = occluder.shafts().slabs(corners);

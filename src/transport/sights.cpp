@@ -2,6 +2,7 @@
 
 #include "base/sampling.h"
 #include "optics/surface_optics.h"
+#include "visibility/walk.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -29,23 +30,17 @@ Onward onward_at(const SurfaceOptics& faces, const Hit& hit, double drawn) {
 }
 
 Way way_from(const Occluder& occluder, const std::optional<Hit>& first, std::uint64_t seed, std::size_t key) {
-  const SurfaceOptics& faces = occluder.optics();
+  const SurfaceOptics& optics = occluder.optics();
   Way way;
-  std::optional<Hit> hit = first;
-  for (std::uint64_t meeting = 0; hit; ++meeting) {
-    way.push_back({*hit, Onward::ends});
-    if (meeting == Occluder::most_meetings) return way;
-    WayStop& stop = way.back();
-    stop.onward = onward_at(faces, stop.hit, hash({seed, key, meeting}) * 0x1p-32);
-    if (stop.onward == Onward::ends) return way;
-    const bool is_mirrored = stop.onward == Onward::mirrored;
-    const Vector direction = is_mirrored ? occluder.mirrored(stop.hit.polygon, stop.hit.direction) : stop.hit.direction;
-    const Ray next{stop.hit.point, direction, stop.hit.polygon};
-    hit = occluder.first_hits({&next, 1}).front();
-    if (!hit) return way;
-    hit->distance += stop.hit.distance;
-    hit->reflections = stop.hit.reflections + (is_mirrored ? 1 : 0);
-  }
+  const auto draw = [&](const Hit& hit, std::uint64_t meeting) -> std::optional<Vector> {
+    const Onward onward = onward_at(optics, hit, hash({seed, key, meeting}) * 0x1p-32);
+    way.push_back({hit, onward});
+    if (onward == Onward::ends) return {};
+    return onward == Onward::mirrored ? optics.mirrored(hit.polygon, hit.direction) : hit.direction;
+  };
+  const std::optional<Hit> last = follow_path(occluder, first, draw);
+  if (way.size() == Occluder::most_meetings && last && way.back().onward != Onward::ends)
+    way.push_back({*last, Onward::ends});
   return way;
 }
 

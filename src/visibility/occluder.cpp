@@ -5,6 +5,7 @@
 #include "scene/triangulate.h"
 #include "visibility/flat_polygon.h"
 #include "visibility/hit_filter.h"
+#include "visibility/walk.h"
 
 #include <algorithm>
 #include <cassert>
@@ -348,31 +349,7 @@ bool Occluder::can_occlude() const {
   return !tracer_->blockers->planes.empty() || !tracer_->specular.empty() || tracer_->faces->covered_places.any();
 }
 
-double Occluder::transmittance(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->specular.transmittance(polygon, direction);
-}
-
-double Occluder::specular_reflectance(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->specular.reflectance(polygon, direction);
-}
-
 const SurfaceOptics& Occluder::optics() const { return tracer_->specular; }
-
-Vector Occluder::mirrored(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->specular.mirrored(polygon, direction);
-}
-
-double Occluder::nonspecular_fraction(PolygonIndex polygon, Side side) const {
-  return tracer_->specular.nonspecular_fraction(polygon, side);
-}
-
-double Occluder::nonspecular_profile(PolygonIndex polygon, const Vector& direction) const {
-  return tracer_->specular.nonspecular_profile(polygon, direction);
-}
-
-Vector Occluder::sample_nonspecular_direction(PolygonIndex polygon, double u, double v) const {
-  return tracer_->specular.sample_nonspecular_direction(polygon, u, v);
-}
 
 bool Occluder::is_covered(PolygonIndex polygon, Side side, const Point& place) const {
   return tracer_->faces->covered_places.covers(polygon, side, tracer_->recentred(place));
@@ -447,34 +424,23 @@ std::vector<std::optional<Hit>> Occluder::first_hits(std::span<const Ray> rays) 
   return hits;
 }
 
-namespace {
-
-// A ray from a specular polygon that has met it, and how many reflections are behind it; nothing where it was kept.
-std::optional<Ray> onward(const Occluder& occluder, const Hit& hit, double drawn) {
-  const double passing = occluder.transmittance(hit.polygon, hit.direction);
-  if (drawn < passing) return Ray{hit.point, hit.direction, hit.polygon};
-  if (drawn >= passing + occluder.specular_reflectance(hit.polygon, hit.direction)) return {};
-  return Ray{hit.point, occluder.mirrored(hit.polygon, hit.direction), hit.polygon};
-}
-
-}  // namespace
-
 // At each specular polygon a ray continues with the probability of its transmittance or reflectance.
 std::vector<std::optional<Hit>> Occluder::sample_nonspecular_hits(std::span<const Ray> rays, std::uint64_t seed,
                                                                   std::span<const std::size_t> keys) const {
   assert(keys.empty() || keys.size() == rays.size());
   std::vector<std::optional<Hit>> hits = first_hits(rays);
-  if (tracer_->specular.empty()) return hits;
+  const SurfaceOptics& optics = tracer_->specular;
+  if (optics.empty()) return hits;
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    for (std::uint64_t meeting = 0; hits[k] && meeting < most_meetings; ++meeting) {
-      const Hit before = *hits[k];
-      const auto ray = onward(*this, before, hash({seed, keys.empty() ? k : keys[k], meeting}) * 0x1p-32);
-      if (!ray) break;
-      hits[k] = first_hits({&*ray, 1}).front();
-      if (!hits[k]) break;
-      hits[k]->distance += before.distance;
-      hits[k]->reflections = before.reflections + (ray->direction == before.direction ? 0 : 1);
-    }
+    const std::size_t key = keys.empty() ? k : keys[k];
+    const auto draw = [&](const Hit& hit, std::uint64_t meeting) -> std::optional<Vector> {
+      const double drawn = hash({seed, key, meeting}) * 0x1p-32;
+      const double passing = optics.transmittance(hit.polygon, hit.direction);
+      if (drawn < passing) return hit.direction;
+      if (drawn >= passing + optics.reflectance(hit.polygon, hit.direction)) return {};
+      return optics.mirrored(hit.polygon, hit.direction);
+    };
+    hits[k] = follow_path(*this, hits[k], draw);
   }
   return hits;
 }

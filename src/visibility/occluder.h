@@ -101,30 +101,8 @@ class Occluder {
   /// of the extent instead of 1e-9.
   std::array<float, ShadowPacket::size> transmittance(const ShadowPacket& packet) const;
 
-  /// The share of light in a unit direction that a polygon transmits straight; 0 if it is opaque, or if the Blockers
-  /// block at clear polygons.
-  double transmittance(PolygonIndex polygon, const Vector& direction) const;
-
-  /// The share of light in a unit direction that a polygon reflects as a mirror; 0 if it does not, or if reflections
-  /// are not followed.
-  double specular_reflectance(PolygonIndex polygon, const Vector& direction) const;
-
-  /// The polygons at which rays pass through or are mirrored.
+  /// The polygons at which rays pass through or are mirrored; none if the Blockers leave out a kind of polygon.
   const SurfaceOptics& optics() const;
-
-  /// The unit direction of a ray after a mirror reflection at a polygon.
-  Vector mirrored(PolygonIndex polygon, const Vector& direction) const;
-
-  /// The share of uniform light that a side of a polygon keeps: 1 except for clear polygons and mirrors.
-  double nonspecular_fraction(PolygonIndex polygon, Side side) const;
-
-  /// The share of light in a unit direction that a polygon keeps, divided by nonspecular_fraction(): 1 if it is opaque.
-  double nonspecular_profile(PolygonIndex polygon, const Vector& direction) const;
-
-  /// Maps (u, v) of the unit square to a direction in a frame whose third axis is the polygon's normal. Directions are
-  /// distributed as the light that the polygon keeps of uniform light. For an opaque polygon it is
-  /// square_to_cosine_hemisphere().
-  Vector sample_nonspecular_direction(PolygonIndex polygon, double u, double v) const;
 
   /// The clear polygons that each ray of a packet crosses between its ends, in the order of the scene; nothing if an
   /// opaque polygon blocks it.

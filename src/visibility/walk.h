@@ -77,6 +77,24 @@ inline void add_specular(std::vector<SpecularPath>& paths, const SpecularPath& p
 
 }  // namespace walk_detail
 
+/// Follows one path from its first hit. `draw(hit, meeting)` returns the direction in which it continues, or nothing
+/// where it ends. The result is the last hit, with the distance and the reflections of the whole path; nothing if it
+/// leaves the scene.
+template <typename Draw>
+std::optional<Hit> follow_path(const Occluder& occluder, std::optional<Hit> hit, const Draw& draw) {
+  for (std::uint64_t meeting = 0; hit && meeting < Occluder::most_meetings; ++meeting) {
+    const Hit before = *hit;
+    const std::optional<Vector> direction = draw(before, meeting);
+    if (!direction) break;
+    const Ray onward{before.point, *direction, before.polygon};
+    hit = occluder.first_hits({&onward, 1}).front();
+    if (!hit) break;
+    hit->distance += before.distance;
+    hit->reflections = before.reflections + (*direction == before.direction ? 0 : 1);
+  }
+  return hit;
+}
+
 /// Follows rays through the clear faces and mirrors that `optics` has, and calls `visit(path, hit)` wherever a path
 /// meets a polygon, or leaves the scene without a hit. `visit` returns the Continuation. A path has at most
 /// Occluder::most_meetings hits. O(hits).

@@ -81,7 +81,7 @@ TEST_P(RowsBeforeAPane, AddUpToOneWhateverTheAngle) {
       double area = 0;
       for (PatchIndex i = range.begin; i < range.end; ++i) {
         sum += sums[i];
-        area += mesh.area[i] * occluder.nonspecular_fraction(p, Side::front);
+        area += mesh.area[i] * occluder.optics().nonspecular_fraction(p, Side::front);
       }
       if (!(area > 0)) continue;
       EXPECT_NEAR(sum / area, 1, 0.006) << p << ' ' << name_of(side);
