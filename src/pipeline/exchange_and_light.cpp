@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,28 +25,6 @@ namespace {
 
 // Sums over all bands, per patch.
 Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
-
-struct Lamp {
-  LampSide side;
-  double flux = 0;
-};
-
-// The sides that emit much, the strongest first.
-std::vector<Lamp> bright_sides(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem) {
-  const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
-  const double mean = scalar_product(exitance, problem.area) / total(problem.area);
-  std::vector<Lamp> lamps;
-  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    for (const Side side : {Side::front, Side::back}) {
-      const PatchRange patches = mesh.patches_on(polygon, side);
-      if (patches.begin == patches.end || !(exitance[patches.begin] > bright * mean)) continue;
-      const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
-      lamps.push_back({{polygon, side}, exitance[patches.begin] * problem.area.segment(patches.begin, count).sum()});
-    }
-  }
-  std::stable_sort(lamps.begin(), lamps.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
-  return lamps;
-}
 
 // The factors of lamps, the patches of a side each, by the clear faces of the run.
 LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
@@ -59,7 +38,7 @@ LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, 
 // The factors of the separate lamps, without rows.
 RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
   RayExchange found;
-  for (const LampSide& lamp : lamps_apart(run.scene, mesh, problem, run.world->tracing()))
+  for (const LampSide& lamp : select_emitters(run.scene, mesh, problem, max_emitter_pieces(run.world->tracing())))
     found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
   found.lamp_factors = factors_of_lamps(found.lamps, run, plan, mesh);
   return found;
@@ -71,13 +50,13 @@ std::vector<PatchRange> new_lamps(const Run& run, const PatchMesh& mesh, const R
                                   const RayExchange& known) {
   std::vector<PatchRange> lamps;
   std::size_t pieces = 0;
-  for (const Lamp& lamp : bright_sides(run.scene, mesh, problem)) {
-    const PatchRange patches = mesh.patches_on(lamp.side.polygon, lamp.side.side);
+  for (const LampSide& lamp : select_emitters(run.scene, mesh, problem, std::numeric_limits<std::size_t>::max())) {
+    const PatchRange patches = mesh.patches_on(lamp.polygon, lamp.side);
     const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
     const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
     if (is_apart || known.rows.directed[patches.begin] != 0) continue;
     lamps.push_back(patches);
-    pieces += piece_count(run.scene, lamp.side);
+    pieces += piece_count(run.scene, lamp);
   }
   if (pieces > 64)
     throw InputError("given.ray_rows",
@@ -169,7 +148,7 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
 
 BrightPatches bright_patches_of(const Run& run, const PatchMesh& mesh, const RayLight& light) {
   const Field expected = emitted_in_rows(light) + light.lit.problem.scattering.reflect(direct_of(light));
-  return {mesh, summed_over_bands(expected), bright, run.world->between_patches()};
+  return {mesh, summed_over_bands(expected), explicit_emitter_ratio, run.world->between_patches()};
 }
 
 // Rows, with rays towards bright patches.
@@ -218,17 +197,35 @@ Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
 
 }  // namespace
 
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                  const Tracing& tracing) {
-  const bool mirrors = tracing.reflections() == Reflections::followed && tracing.has_specular_surfaces();
-  std::vector<LampSide> apart;
-  std::size_t pieces = 0;
-  for (const Lamp& lamp : bright_sides(scene, mesh, problem)) {
-    pieces += piece_count(scene, lamp.side);
-    if (pieces > (mirrors ? 64U : 16U)) break;
-    apart.push_back(lamp.side);
+std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                      std::size_t max_pieces) {
+  struct Emitter {
+    LampSide side;
+    double flux = 0;
+  };
+  const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
+  const double mean = scalar_product(exitance, problem.area) / total(problem.area);
+  std::vector<Emitter> emitters;
+  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
+    for (const Side side : {Side::front, Side::back}) {
+      const auto [begin, end] = mesh.patches_on(polygon, side);
+      if (begin == end || !(exitance[begin] > explicit_emitter_ratio * mean)) continue;
+      emitters.push_back({{polygon, side}, exitance[begin] * problem.area.segment(begin, end - begin).sum()});
+    }
   }
-  return apart;
+  std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
+  std::vector<LampSide> selected;
+  std::size_t pieces = 0;
+  for (const Emitter& emitter : emitters) {
+    pieces += piece_count(scene, emitter.side);
+    if (pieces > max_pieces) break;
+    selected.push_back(emitter.side);
+  }
+  return selected;
+}
+
+std::size_t max_emitter_pieces(const Tracing& tracing) {
+  return tracing.reflections() == Reflections::followed && tracing.has_specular_surfaces() ? 64 : 16;
 }
 
 Field emitted_in_rows(const RayLight& light) {

@@ -8,20 +8,22 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace patchlight {
 
-/// Patches and lamps with more than this multiple of the mean exitance are bright. Measured: values from 2 to 16 work
-/// equally well.
-inline constexpr double bright = 4;
+/// Emitters above this multiple of the mean exitance are sampled explicitly. Results do not change between 2 and 16.
+inline constexpr double explicit_emitter_ratio = 4;
 
-/// The lamps that are sampled separately from rows of rays, strongest first. They are sides of polygons that emit more
-/// than `bright` times the mean over all patches. Their number is limited to 16 triangles and convex quadrilaterals, or
-/// 64 with mirrors, in which hemisphere rays would rarely find the others.
-std::vector<LampSide> lamps_apart(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                  const Tracing& tracing);
+/// Selects the sides of polygons that are sampled explicitly, strongest first, up to a number of triangles and convex
+/// quadrilaterals. Rays find the light of the others.
+std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                      std::size_t max_pieces);
+
+/// The number of pieces beside rows of rays, and at sensors: 16, or 64 with mirrors, in which rays rarely find lamps.
+std::size_t max_emitter_pieces(const Tracing& tracing);
 
 /// The light that goes with rows of rays. The light of lamps is computed separately: few rays of a row meet a small
 /// bright source, and smoothing would blur its shadows.
@@ -45,7 +47,7 @@ struct ExchangeAndLight {
   RayLight light;
 };
 
-/// Traces rows and computes the light of lamps_apart(). Light that all surfaces emit alike, and the light of many
+/// Traces rows and computes the light of select_emitters(). Light that all surfaces emit alike, and the light of many
 /// lamps, stays in the rows, which also sample bright patches directly. Uses Steps::ray_exchange if given; lamps that
 /// it does not know are sampled by shadow rays. \throws Canceled; InputError when these are too many.
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});

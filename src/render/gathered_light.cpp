@@ -305,6 +305,13 @@ Field GatheredLight::sums_of_rays(const std::vector<Stop>& stops, const Field& a
   return sums;
 }
 
+// True if the patch is wider than the path is long, and its light follows from its irradiance alone.
+bool GatheredLight::is_near(const Stop& stop) const {
+  return stop.distance * stop.distance < solved_.mesh.area[stop.patch] && !stop.is_specular &&
+         !behind(solved_, stop.patch) && !solved_.lights.lighting.mirrors &&
+         (solved_.exitance.row(stop.patch) == 0).all();
+}
+
 // The radiosity, without exitance, that arrives from each stop.
 Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const {
   const PatchMesh& mesh = solved_.mesh;
@@ -312,15 +319,10 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
   Field found = Field::Zero(rows, solved_.reflected.cols());
   std::vector<std::size_t> near;
   for (std::size_t k = 0; k < stops.size(); ++k) {
-    const Stop& stop = stops[k];
-    const PatchIndex patch = stop.patch;
-    const bool is_near = stop.distance * stop.distance < mesh.area[patch];
-    const bool goes_on = is_near && bounces_left > 0 && !stop.is_specular && !behind(solved_, patch) &&
-                         !solved_.lights.lighting.mirrors && (solved_.exitance.row(patch) == 0).all();
-    if (goes_on)
+    if (bounces_left > 0 && is_near(stops[k]))
       near.push_back(k);
     else
-      found.row(static_cast<Eigen::Index>(k)) = stop.weight * solved_.reflected.row(patch);
+      found.row(static_cast<Eigen::Index>(k)) = stops[k].weight * solved_.reflected.row(stops[k].patch);
   }
   if (near.empty()) return found;
 
@@ -349,6 +351,18 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
   return found;
 }
 
+// How far each ray looks: up to the stop that counts most.
+std::vector<double> GatheredLight::distances_of_rays(const std::vector<Stop>& stops, std::size_t rays) {
+  std::vector<double> distances(rays, std::numeric_limits<double>::infinity());
+  std::vector<double> largest(rays, 0);
+  for (const Stop& stop : stops) {
+    if (!(stop.weight.mean() > largest[stop.ray])) continue;
+    largest[stop.ray] = stop.weight.mean();
+    distances[stop.ray] = stop.distance;
+  }
+  return distances;
+}
+
 IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t key, double least, double most,
                                           const HemisphereOptions& options) const {
   const PatchMesh& mesh = solved_.mesh;
@@ -360,14 +374,7 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
     rays.push_back({at.point, direction, mesh.polygon[at.patch]});
   const std::size_t count = rays.size();
   const std::vector<Stop> stops = stops_of(std::move(rays), hash({seed, stream::panes_of_gather}));
-  // The stop that sends most decides how fast the light of a ray changes with the place.
-  std::vector<double> distances(count, std::numeric_limits<double>::infinity());
-  std::vector<double> largest(count, 0);
-  for (const Stop& stop : stops) {
-    if (!(stop.weight.mean() > largest[stop.ray])) continue;
-    largest[stop.ray] = stop.weight.mean();
-    distances[stop.ray] = stop.distance;
-  }
+  const std::vector<double> distances = distances_of_rays(stops, count);
   const HemisphereIrradiance found =
       hemisphere.irradiance(sums_of_rays(stops, arriving(stops, options.most_bounces, seed), count), distances);
 

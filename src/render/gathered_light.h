@@ -181,6 +181,8 @@ class GatheredLight {
   SkyAim aim_at(PatchIndex patch) const;
   std::vector<Stop> stops_of(std::vector<Ray> rays, std::uint64_t seed) const;
   Field arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const;
+  bool is_near(const Stop& stop) const;
+  static std::vector<double> distances_of_rays(const std::vector<Stop>& stops, std::size_t rays);
   static Field sums_of_rays(const std::vector<Stop>& stops, const Field& arriving, std::size_t rays);
 
   const SolvedLight& solved_;

@@ -69,7 +69,8 @@ std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
 std::vector<LampSide> lamps_over_chains(const Simulation& simulation) {
   const World& world = *simulation.world;
   if (!world.sensor_lighting().mirrors) return {};
-  return lamps_apart(world.sensor_scene(), simulation.mesh, simulation.problem, world.tracing());
+  return select_emitters(world.sensor_scene(), simulation.mesh, simulation.problem,
+                         max_emitter_pieces(world.tracing()));
 }
 
 Field without_exitance(Field sent, const Simulation& simulation, std::span<const LampSide> lamps) {
@@ -92,13 +93,13 @@ DirectIrradiance over_chains(const Simulation& simulation, std::span<const LampS
                              {.seed = simulation.plan.assembly.seed}, observer);
 }
 
-Readings readings_at(std::span<const SensorPlace> places, const Simulation& simulation, const Observer& observer) {
+// The irradiance by patches, luminaires, sun and sky, directly and in mirrors.
+GatheredIrradiance irradiance_at(const std::vector<Sensor>& sensors, const Simulation& simulation,
+                                 const Observer& observer) {
   const World& world = *simulation.world;
-  const Scene& scene = world.sensor_scene();
   // Without interreflection sensors see the light of lamps alone.
   const Field& sent =
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
-  const std::vector<Sensor> sensors = free_sensors(places);
   const std::uint64_t seed = simulation.plan.assembly.seed;
   const Lighting& lighting = world.sensor_lighting();
   const std::vector<LampSide> lamps = lamps_over_chains(simulation);
@@ -110,11 +111,10 @@ Readings readings_at(std::span<const SensorPlace> places, const Simulation& simu
                                                    .aim = lighting.mirrors ? &lighting.mirrors->aim : nullptr,
                                                    .mirrored_light = &mirrored},
                                                   observer);
-  SensorErrors& errors = gathered.errors;
   // Light that is still under way, by how much is not known.
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
-  if (!is_known) errors.solver = Field::Constant(errors.rays.rows(), errors.rays.cols(), std::nan(""));
-  if (has_point_or_daylight(scene)) {
+  if (!is_known) gathered.errors.solver.setConstant(std::nan(""));
+  if (has_point_or_daylight(world.sensor_scene())) {
     const auto direct = direct_irradiance(lighting, points_of(sensors), {.seed = seed}, observer);
     add(gathered, direct.irradiance, direct.standard_error);
   }
@@ -122,7 +122,13 @@ Readings readings_at(std::span<const SensorPlace> places, const Simulation& simu
     const auto direct = over_chains(simulation, lamps, sensors, observer);
     add(gathered, direct.irradiance, direct.standard_error);
   }
-  Readings readings = {.irradiance = at_places(gathered.irradiance, places),
+  return gathered;
+}
+
+Readings readings_at(std::span<const SensorPlace> places, const Simulation& simulation, const Observer& observer) {
+  const Scene& scene = simulation.world->sensor_scene();
+  const auto [irradiance, errors] = irradiance_at(free_sensors(places), simulation, observer);
+  Readings readings = {.irradiance = at_places(irradiance, places),
                        .standard_error = at_places(errors.total(), places),
                        .errors = {.rays = at_places(errors.rays, places),
                                   .sampling = at_places(errors.sampling, places),

@@ -37,32 +37,14 @@ LampFace seen_from_front(LampFace face, Side side) {
 PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
   const Field& exitance = simulation.problem.exitance;
-  struct Lamp {
-    PatchRange patches;
-    double flux;
-  };
-  std::vector<Lamp> sides;
-  const double mean = exitance.rowwise().mean().matrix().dot(simulation.problem.area) / simulation.problem.area.sum();
-  for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    for (const Side side : {Side::front, Side::back}) {
-      const PatchRange patches = mesh.patches_on(polygon, side);
-      if (patches.begin == patches.end || !(exitance.row(patches.begin) > 0).any()) continue;
-      double area = 0;
-      for (PatchIndex patch = patches.begin; patch < patches.end; ++patch) area += mesh.area[patch];
-      if (exitance.row(patches.begin).mean() > bright * mean)
-        sides.push_back({patches, area * exitance.row(patches.begin).mean()});
-    }
-  }
-  std::stable_sort(sides.begin(), sides.end(), [](const Lamp& a, const Lamp& b) { return a.flux > b.flux; });
   PictureLamps lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
-  for (const auto& [patches, flux] : sides) {
-    if (lamps.faces.size() >= 256) break;
-    for (LampFace& face : lamp_faces(scene, mesh.polygon[patches.begin], mesh.side[patches.begin])) {
-      face.exitance = exitance.row(patches.begin);
-      lamps.faces.push_back(seen_from_front(std::move(face), mesh.side[patches.begin]));
+  for (const auto& [polygon, side] : select_emitters(scene, mesh, simulation.problem, 256)) {
+    const auto [begin, end] = mesh.patches_on(polygon, side);
+    for (LampFace& face : lamp_faces(scene, polygon, side)) {
+      face.exitance = exitance.row(begin);
+      lamps.faces.push_back(seen_from_front(std::move(face), side));
     }
-    const auto count = static_cast<Eigen::Index>(patches.end - patches.begin);
-    lamps.exitance.middleRows(patches.begin, count) = exitance.middleRows(patches.begin, count);
+    lamps.exitance.middleRows(begin, end - begin) = exitance.middleRows(begin, end - begin);
   }
   return lamps;
 }
