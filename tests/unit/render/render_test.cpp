@@ -8,6 +8,7 @@
 #include "scene/photometric_web.h"
 #include "visibility/occluder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
@@ -36,6 +37,26 @@ Image picture_of(const Scene& scene, const FieldView& radiance, const Camera& ca
     material.reflectance = material.exitance = Spectrum::Zero(radiance.cols());
   const Occluder occluder(of_bands);
   return render(mesh, smooth(mesh, radiance, area, occluder), occluder, occluder.optics(), camera, up, options);
+}
+
+// A sheet with holes between the camera and a square colors its image, per band by its transmittance. So does its back,
+// which has no patches.
+TEST(Render, APaneColorsTheLightBehindIt) {
+  for (const bool is_turned : {false, true}) {
+    Scene scene = quad_scene({upright_square({0, 2, 0}), upright_square({0, 1, 0})});
+    Material pane = scene.materials[0];
+    pane.reflectance = Spectrum::Zero(3);
+    pane.transmittance = Eigen::Array3d(0.8, 0.4, 0.1).transpose();
+    pane.index = 1;
+    scene.materials.push_back(pane);
+    scene.polygons[1].material = 1;
+    if (is_turned) std::reverse(scene.polygons[1].corners.begin(), scene.polygons[1].corners.end());
+    Field radiance = Field::Zero(2, 3);
+    radiance.row(0).setConstant(5);
+    const Image image = picture_of(scene, radiance, camera_along_y(10), {.width = 4, .height = 4});
+    for (Eigen::Index pixel = 0; pixel < image.pixels.rows(); ++pixel)
+      EXPECT_LT((image.pixels.row(pixel) - 5 * pane.transmittance).abs().maxCoeff(), 1e-12) << is_turned;
+  }
 }
 
 // The area in pixels of a quadrilateral's image under y-axis perspective, by the shoelace formula.
