@@ -324,13 +324,15 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
 // rays to j; and its variance (Horvitz and Thompson 1952). Rays to a patch that agree may miss what the others of it
 // would meet: of all such rays the heaviest counts as an error. A patch that stands for others counts as a whole, as
 // those may be visible.
-void add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources, const Spectrum& limit,
-                        double times, std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
+std::vector<SeenPatch> add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources,
+                                          const Spectrum& limit, double times, std::uint32_t stage, Reading& reading,
+                                          ErrorsOfPatches& errors) {
   const std::vector<ChosenSource> chosen =
       chosen_sources(sources, limit, gather, times, key_of(sensor, gather.frame, gather.options.seed, stage));
   const std::vector<VisibleShare> shares = gather.shadow_rays.visible_shares(sensor, chosen, stage);
   const Eigen::Index bands = reading.mean.size();
   Spectrum heaviest = Spectrum::Zero(bands);
+  std::vector<SeenPatch> seen;
   for (std::size_t s = 0; s < chosen.size(); ++s) {
     const auto& [source, rays, probability] = chosen[s];
     const VisibleShare& share = shares[s];
@@ -349,10 +351,12 @@ void add_bright_patches(const Gather& gather, const Sensor& sensor, const Source
     const PatchMesh& mesh = gather.light.mesh;
     const Spectrum weight = factor * share.mean();
     const double squared_distance = (mesh.centroid[source->patch] - sensor.point).squaredNorm();
-    errors.add({source->patch, weight, probability * weight.square(), weight * (1 - share.visible),
-                squared_unevenness(mesh, source->patch, squared_distance)});
+    seen.push_back({source->patch, weight, probability * weight.square(), weight * (1 - share.visible),
+                    squared_unevenness(mesh, source->patch, squared_distance)});
+    errors.add(seen.back());
   }
   reading.variance += heaviest.square();
+  return seen;
 }
 
 // An unbiased estimate of the product of two means from their sums over independent replicates (rows).
@@ -361,9 +365,10 @@ Spectrum product_of_means(const Field& a, const Field& b) {
   return (all - (a * b).colwise().sum()) * most_replicates / (most_replicates - 1.0);
 }
 
-// The errors of a patch that paths meet. The visible share is that of straight rays without their losses in panes.
+// The errors of a patch that paths meet. The visible share is that of straight rays without their losses in panes. A
+// bright patch is met in mirrors only. With its weight w by shadow rays, (w + w')^2 - w^2 = w'^2 + 2 w w' is added.
 void add_errors(const Gather& gather, const Sensor& sensor, std::span<const HemisphereHit> hits,
-                ErrorsOfPatches& errors) {
+                std::span<const SeenPatch> bright, ErrorsOfPatches& errors) {
   const PatchMesh& mesh = gather.light.mesh;
   const PatchIndex j = hits.front().patch;
   const Field none = Field::Zero(most_replicates, hits.front().weight.size());
@@ -380,17 +385,23 @@ void add_errors(const Gather& gather, const Sensor& sensor, std::span<const Hemi
   Spectrum hidden = straight.colwise().sum();
   const double unoccluded = point_to_polygon(sensor.point, sensor.normal, outline_above_horizon(mesh, j, sensor));
   if (unoccluded > 0) hidden -= product_of_means(straight, form_factors) / unoccluded;
-  errors.add({j, weights.colwise().sum(), product_of_means(weights, weights), hidden, unevenness / sum});
+  const Spectrum weight = weights.colwise().sum();
+  Spectrum square = product_of_means(weights, weights);
+  const auto direct = std::lower_bound(bright.begin(), bright.end(), j,
+                                       [](const SeenPatch& seen, PatchIndex patch) { return seen.patch < patch; });
+  if (direct != bright.end() && direct->patch == j) square += 2 * direct->weight * weight;
+  errors.add({j, weight, square, hidden, unevenness / sum});
 }
 
 // E = sum over rays of w (B_j + g_j . (y - c_j)) at the points y that paths meet. Bright patches count in mirrors
 // alone.
 void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectrum& limit, double times,
-                       std::uint32_t stage, Reading& reading, ErrorsOfPatches& errors) {
+                       std::uint32_t stage, std::span<const SeenPatch> bright, Reading& reading,
+                       ErrorsOfPatches& errors) {
   const PatchMesh& mesh = gather.light.mesh;
   const FieldView& radiosity = gather.light.radiosity;
   const auto each = static_cast<std::uint32_t>(std::ceil(std::max(2.0, times * gather.options.rays / most_replicates)));
-  std::vector<HemisphereHit> hits = gather.hemisphere.hits(sensor, each, stage);
+  auto [hits, rays] = gather.hemisphere.hits(sensor, each, stage);
   std::erase_if(hits, [&](const HemisphereHit& hit) {
     const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
     return !hit.is_mirrored && ((radiosity.row(hit.patch) > limit).any() || height <= gather.tolerance());
@@ -408,12 +419,12 @@ void add_other_patches(const Gather& gather, const Sensor& sensor, const Spectru
   const Spectrum mean = means.colwise().mean();
   reading.mean += mean;
   reading.variance += (means.rowwise() - mean).square().colwise().sum() / (most_replicates * (most_replicates - 1.0));
-  reading.rays += each * most_replicates;
+  reading.rays += rays;
   std::stable_sort(hits.begin(), hits.end(),
                    [](const HemisphereHit& a, const HemisphereHit& b) { return a.patch < b.patch; });
   for (auto first = hits.begin(); first != hits.end();) {
     const auto last = std::find_if(first, hits.end(), [&](const auto& hit) { return hit.patch != first->patch; });
-    add_errors(gather, sensor, {first, last}, errors);
+    add_errors(gather, sensor, {first, last}, bright, errors);
     first = last;
   }
 }
@@ -424,9 +435,10 @@ Reading estimate(const Gather& gather, const Sensor& sensor, const Sources& sour
   Reading reading;
   for (Spectrum Reading::*const part : parts_of_reading) reading.*part = Spectrum::Zero(limit.size());
   ErrorsOfPatches errors(gather.light, reading);
-  add_bright_patches(gather, sensor, sources, limit, times, stage, reading, errors);
+  const std::vector<SeenPatch> bright =
+      add_bright_patches(gather, sensor, sources, limit, times, stage, reading, errors);
   if (sources.is_rest_lit || gather.light.mirrored != nullptr)
-    add_other_patches(gather, sensor, limit, times, stage, reading, errors);
+    add_other_patches(gather, sensor, limit, times, stage, bright, reading, errors);
   errors.finish();
   reading.hidden = reading.hidden.max(0);
   return reading;
@@ -459,7 +471,7 @@ Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
   Spectrum sum = Spectrum::Zero(gather.light.radiosity.cols());
   const auto least = static_cast<double>(gather.options.least_rays) * gather.light.mesh.size();
   if (least <= gather.options.rays) return sum;
-  for (const HemisphereHit& hit : gather.hemisphere.hits(sensor, each, 2))
+  for (const HemisphereHit& hit : gather.hemisphere.hits(sensor, each, 2).all)
     if (!hit.is_mirrored) sum += hit.weight * gather.light.radiosity.row(hit.patch);
   return bright_factor * sum;
 }
@@ -502,12 +514,12 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
                                      std::span<const Sensor> sensors, const GatherOptions& options,
                                      const Observer& observer) {
   const SurfaceOptics& optics = options.paths != nullptr ? *options.paths->optics() : occluder.optics();
-  const ShadowRays shadow_rays(mesh, occluder, options.seed, optics.is_coloured() ? options.paths : nullptr);
-  const HemisphereRays hemisphere(mesh, occluder, optics, options.seed, options.aim);
+  const ShadowRays shadow_rays(mesh, occluder, options.seed, optics.transmits_colour() ? options.paths : nullptr);
+  const HemisphereRays hemisphere(mesh, occluder, optics, radiosity.cols(), options.seed, options.aim);
   const FieldView mirrored = options.mirrored_light != nullptr ? FieldView(*options.mirrored_light) : radiosity;
   const Light light{mesh, radiosity,
                     options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
-                    options.errors, optics.mirrors() ? &mirrored : nullptr};
+                    options.errors, optics.follows_reflections() ? &mirrored : nullptr};
   const Gather gather{light, shadow_rays, hemisphere, options, occluder.frame()};
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer,

@@ -111,14 +111,19 @@ std::uint64_t key_of(const Sensor& sensor, const TracingFrame& frame, std::uint6
 }
 
 HemisphereRays::HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, const SurfaceOptics& optics,
-                               std::uint64_t seed, const SpecularAim* aim)
+                               Eigen::Index bands, std::uint64_t seed, const SpecularAim* aim)
     : mesh_(mesh),
       occluder_(occluder),
       optics_(optics),
+      bands_(bands),
       aim_(aim),
       seed_(seed),
       lookup_(mesh),
       points_(scrambled_sobol(most_points, hash({seed, stream::hemisphere_of_sensor}))) {}
+
+Spectrum HemisphereRays::by_band(const Spectrum& throughput) const {
+  return throughput.size() == bands_ ? throughput : Spectrum::Constant(bands_, throughput.mean());
+}
 
 // Each replicate shifts the points by its own hash (Cranley and Patterson 1976).
 std::vector<std::array<double, 2>> HemisphereRays::samples(std::uint64_t key, std::uint32_t replicate,
@@ -135,11 +140,12 @@ std::vector<std::array<double, 2>> HemisphereRays::samples(std::uint64_t key, st
   return samples;
 }
 
-std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
+HemisphereHits HemisphereRays::hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
   const std::uint64_t key = hash({key_of(sensor, occluder_.frame(), seed_, stage), stream::hemisphere_of_sensor});
   const SurfacePoint at{sensor.point, sensor.normal};
-  const std::uint32_t count = aim_ != nullptr && aim_->is_before(at) ? 2 * each : each;
-  std::vector<HemisphereHit> found;
+  const std::vector<double> targets = aim_ != nullptr ? aim_->probabilities_from(at) : std::vector<double>();
+  const std::uint32_t count = targets.empty() ? each : 2 * each;
+  HemisphereHits found{{}, static_cast<double>(most_replicates) * count};
   for (std::uint32_t r = 0; r < most_replicates; ++r) {
     std::vector<Ray> rays;
     std::vector<double> form_factors;
@@ -148,8 +154,8 @@ std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint3
       form_factors.push_back(weight / (std::numbers::pi * most_replicates));  // L = B / pi
     };
     const std::vector<std::array<double, 2>> samples = this->samples(key, r, count);
-    if (aim_ != nullptr)
-      for (const auto& [ray, weight] : aim_->rays(at, samples)) add(ray, weight);
+    if (!targets.empty())
+      for (const auto& [ray, weight] : aim_->rays(at, targets, samples)) add(ray, weight);
     else
       for (const auto& [u, v] : samples)
         add({sensor.point, cosine_direction(sensor.normal, u, v)}, std::numbers::pi / count);
@@ -157,11 +163,10 @@ std::vector<HemisphereHit> HemisphereRays::hits(const Sensor& sensor, std::uint3
          [&](const SpecularPath& path, const std::optional<Hit>& hit) {
            if (!hit) return Continuation::ends;
            const double form_factor = form_factors[path.start];
+           const double profile = occluder_.optics().nonspecular_profile(hit->polygon, hit->direction);
            if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
-             found.push_back(
-                 {*patch, r, hit->point, path.distance + hit->distance, form_factor,
-                  form_factor * occluder_.optics().nonspecular_profile(hit->polygon, hit->direction) * path.throughput,
-                  path.reflections > 0});
+             found.all.push_back({*patch, r, hit->point, path.distance + hit->distance, form_factor,
+                                  form_factor * profile * by_band(path.throughput), path.reflections > 0});
            return Continuation::specular;
          });
   }

@@ -84,23 +84,30 @@ struct HemisphereHit {
   bool is_mirrored = false;  ///< the path has a reflection
 };
 
+struct HemisphereHits {
+  std::vector<HemisphereHit> all;
+  double rays = 0;  ///< from the sensor
+};
+
 /// Rays from sensors over the hemisphere, in most_replicates independent replicates. They are distributed as the
 /// cosine, or by SpecularAim, with twice as many rays. Paths continue through clear faces and mirrors.
 class HemisphereRays {
  public:
-  /// `aim` may be null.
-  HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, const SurfaceOptics& optics, std::uint64_t seed,
-                 const SpecularAim* aim);
+  /// `aim` may be null. If `bands` differs from the bands of the optics, all bands have the mean throughput.
+  HemisphereRays(const PatchMesh& mesh, const Occluder& occluder, const SurfaceOptics& optics, Eigen::Index bands,
+                 std::uint64_t seed, const SpecularAim* aim);
 
-  /// The hits of `each` rays of every replicate, or twice as many with an aim.
-  std::vector<HemisphereHit> hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const;
+  /// The hits of `each` rays of every replicate, or twice as many with targets of the aim.
+  HemisphereHits hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const;
 
  private:
+  Spectrum by_band(const Spectrum& throughput) const;
   std::vector<std::array<double, 2>> samples(std::uint64_t key, std::uint32_t replicate, std::uint32_t count) const;
 
   const PatchMesh& mesh_;
   const Occluder& occluder_;
   const SurfaceOptics& optics_;
+  Eigen::Index bands_;
   const SpecularAim* aim_;
   std::uint64_t seed_;
   PatchLookup lookup_;

@@ -35,7 +35,7 @@ Spectrum transmittance(const std::vector<Pane>& panes, double cosine);
 /// The specular reflectance per band.
 Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine);
 
-/// The fraction of light that is absorbed or scattered, where this fraction goes on specularly: at least 1e-6.
+/// The fraction of light that is absorbed or scattered: 1 minus the specular fraction, at least 1e-6.
 double nonspecular_rest(double specular);
 
 /// Midpoint rule for the mean over the hemisphere, weighted by the cosine. This number of steps gives the fraction that

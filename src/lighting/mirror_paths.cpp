@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -151,6 +153,15 @@ std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) cons
     sum += probabilities.back();
   }
   if (!(sum > 0)) return {};
+  constexpr std::size_t max_targets = 32;  // each costs time for every ray
+  if (probabilities.size() > max_targets) {
+    std::vector<double> sorted = probabilities;
+    std::nth_element(sorted.begin(), sorted.begin() + max_targets, sorted.end(), std::greater<>());
+    for (double& probability : probabilities)
+      if (probability <= sorted[max_targets]) probability = 0;
+    sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
+    if (!(sum > 0)) return {};
+  }
   for (double& probability : probabilities) probability /= sum;
   return probabilities;
 }
@@ -167,9 +178,8 @@ double SpecularAim::aimed_density(std::span<const double> probabilities, const S
   return density;
 }
 
-std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at,
+std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<const double> probabilities,
                                            std::span<const std::array<double, 2>> samples) const {
-  const std::vector<double> probabilities = probabilities_from(at);
   const std::size_t aimed = probabilities.empty() ? 0 : samples.size() / 2;
   const std::size_t diffuse = samples.size() - aimed;
   std::vector<WeightedRay> rays;

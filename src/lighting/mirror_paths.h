@@ -61,19 +61,20 @@ class SpecularAim {
  public:
   SpecularAim(const Scene& scene, const SurfaceOptics& optics);
 
-  /// True if a clear face or a mirror is before a place.
-  bool is_before(const SurfacePoint& at) const { return !probabilities_from(at).empty(); }
+  /// The probability of each target at a place, by its apparent size; the 32 largest only. Empty if no target is above
+  /// the place's horizon.
+  std::vector<double> probabilities_from(const SurfacePoint& at) const;
 
   /// Half of the samples, two numbers each, become directions distributed as the cosine over the hemisphere. The others
-  /// become points on the clear faces and mirrors before the place. The balance heuristic combines both (Veach and
-  /// Guibas 1995). All are distributed as the cosine where no such face is before the place.
-  std::vector<WeightedRay> rays(const SurfacePoint& at, std::span<const std::array<double, 2>> samples) const;
+  /// become points on targets, chosen by `probabilities`. The balance heuristic combines both (Veach and Guibas 1995).
+  /// Without probabilities all are distributed as the cosine.
+  std::vector<WeightedRay> rays(const SurfacePoint& at, std::span<const double> probabilities,
+                                std::span<const std::array<double, 2>> samples) const;
 
  private:
-  std::vector<double> probabilities_from(const SurfacePoint& at) const;
   double aimed_density(std::span<const double> probabilities, const SurfacePoint& at, const Vector& direction) const;
 
-  std::vector<Opening> targets_;  // the largest of these faces
+  std::vector<Opening> targets_;  // the clear faces and mirrors, the largest first
 };
 
 }  // namespace patchlight

@@ -149,7 +149,7 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
 Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_point, std::uint32_t key) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
   const auto& [paths, aim, occluder] = *lighting.mirrors;
-  if (!lighting.sky || !aim.is_before(places[0].at)) return sum;
+  if (!lighting.sky) return sum;
   const std::size_t each = is_point ? places.size() : 2;
   std::vector<Ray> rays;
   std::vector<double> weights;
@@ -159,7 +159,9 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
       const std::array<double, 4>& sample = places[(k + n) % places.size()].sample;
       samples.push_back({sample[2], sample[3]});
     }
-    for (const auto& [ray, weight] : aim.rays(places[k].at, samples)) {
+    const std::vector<double> probabilities = aim.probabilities_from(places[k].at);
+    if (probabilities.empty()) continue;  // no reflection can be seen
+    for (const auto& [ray, weight] : aim.rays(places[k].at, probabilities, samples)) {
       rays.push_back(ray);
       weights.push_back(weight);
     }

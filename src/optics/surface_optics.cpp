@@ -57,12 +57,11 @@ Spectrum SpecularSurface::spectral_reflectance(Side side, double cosine) const {
   return mirrors_[s].size() > 0 ? mirrors_[s] : Spectrum(Spectrum::Zero(bands_));
 }
 
-bool SpecularSurface::is_coloured() const {
+bool SpecularSurface::transmits_colour() const {
   const auto differs = [](const Pane& a, const Pane& b) { return a.index != b.index || a.internal != b.internal; };
   for (const std::vector<Pane>& panes : panes_)
     if (std::adjacent_find(panes.begin(), panes.end(), differs) != panes.end()) return true;
-  return std::any_of(mirrors_.begin(), mirrors_.end(),
-                     [](const Spectrum& mirror) { return mirror.size() > 0 && (mirror != mirror[0]).any(); });
+  return false;
 }
 
 void SpecularSurface::tabulate_nonspecular() {
@@ -149,8 +148,8 @@ SurfaceOptics::SurfaceOptics(const Scene& scene, Reflections reflections)
   }
 }
 
-bool SurfaceOptics::is_coloured() const {
-  return std::any_of(faces_.begin(), faces_.end(), [](const SpecularSurface& face) { return face.is_coloured(); });
+bool SurfaceOptics::transmits_colour() const {
+  return std::any_of(faces_.begin(), faces_.end(), [](const SpecularSurface& face) { return face.transmits_colour(); });
 }
 
 const SpecularSurface* SurfaceOptics::at(PolygonIndex polygon) const {

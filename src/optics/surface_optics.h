@@ -62,8 +62,8 @@ class SpecularSurface {
   bool is_specular(Side side) const { return is_clear() || is_mirror_[static_cast<std::size_t>(side)] != 0; }
   bool is_clear() const { return !parts_.empty(); }
 
-  /// True if it transmits or mirrors the bands differently.
-  bool is_coloured() const;
+  /// True if it transmits the bands differently.
+  bool transmits_colour() const;
 
   /// A number for the properties behind mirrored_rays(): 0 of a side from which no ray goes on, 1 of a mirror, the
   /// index of refraction and 1 of a clear one, less than 0 where that keeps its reflections.
@@ -103,11 +103,11 @@ class SurfaceOptics {
 
   bool empty() const { return faces_.empty(); }
 
-  /// True if light goes on from mirrors and clear faces after a reflection.
-  bool mirrors() const { return !faces_.empty() && reflections_ == Reflections::followed; }
+  /// True if light continues from mirrors and clear faces after a reflection.
+  bool follows_reflections() const { return !faces_.empty() && reflections_ == Reflections::followed; }
 
-  /// True if some face transmits or mirrors the bands differently.
-  bool is_coloured() const;
+  /// True if some face transmits the bands differently.
+  bool transmits_colour() const;
 
   /// The functions of SpecularSurface for a polygon. For all others the specular fractions are 0 and the nonspecular
   /// ones 1.

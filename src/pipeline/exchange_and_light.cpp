@@ -217,8 +217,9 @@ std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh,
   std::vector<LampSide> selected;
   std::size_t pieces = 0;
   for (const Emitter& emitter : emitters) {
-    pieces += piece_count(scene, emitter.side);
-    if (pieces > max_pieces) break;
+    const std::size_t more = piece_count(scene, emitter.side);
+    if (more > max_pieces - pieces) continue;
+    pieces += more;
     selected.push_back(emitter.side);
   }
   return selected;

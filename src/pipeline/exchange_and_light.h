@@ -14,7 +14,8 @@
 
 namespace patchlight {
 
-/// Emitters above this multiple of the mean exitance are sampled explicitly. Results do not change between 2 and 16.
+/// Emitters above this multiple of the mean exitance are sampled explicitly. Measured: 2 to 16 cost the same
+/// time for the same accuracy.
 inline constexpr double explicit_emitter_ratio = 4;
 
 /// Selects the sides of polygons that are sampled explicitly, strongest first, up to a number of triangles and convex

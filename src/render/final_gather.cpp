@@ -74,8 +74,8 @@ std::vector<Candidate> seen_in_row(const PictureView& view, int width, int y, in
     if (ray) rays.push_back(*ray);
   }
   std::vector<Candidate> all;
-  for (const SeenPatch& seen : seen_by(view.solved.occluder, *view.solved.lights.lighting.paths.optics(),
-                                       view.gather.lookup(), rays, view.luminaires)) {
+  for (const SeenPatch& seen :
+       seen_by(view.solved.occluder, optics_of(view.solved), view.gather.lookup(), rays, {}, view.luminaires)) {
     if (!seen.patch || !is_plain(view.solved, *seen.patch)) continue;
     const double pixel_width = view.lens.pixel_width(seen.distance);
     all.push_back({{seen.point, *seen.patch}, pixel_width});
@@ -153,6 +153,7 @@ struct EyeSample {
 struct EyeSamples {
   std::vector<EyeSample> all;
   std::vector<Ray> rays;
+  std::vector<std::uint64_t> keys;   // of the rays
   std::vector<std::size_t> of_rays;  // the sample of each; beyond the edge of a fisheye's picture there is no ray
 };
 
@@ -240,6 +241,7 @@ EyeSamples FinalGather::eye_samples(const PixelTile& tile, const std::vector<std
         samples.all.push_back({pixel, k});
         if (!ray) continue;
         samples.rays.push_back(*ray);
+        samples.keys.push_back(hash({options_.seed, static_cast<std::uint64_t>(pixel), k, stream::survival_of_path}));
         samples.of_rays.push_back(samples.all.size() - 1);
       }
     }
@@ -266,8 +268,8 @@ FinalGather::Seen FinalGather::seen(const EyeSamples& samples) const {
   const auto add = [&](const SeenPatch& seen, PatchIndex patch, const Spectrum& factor) {
     if ((factor > 0).any()) all.points.push_back({samples.of_rays[seen.ray], {seen.point, patch}, factor});
   };
-  for (const SeenPatch& seen : seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(),
-                                       samples.rays, luminaires_)) {
+  for (const SeenPatch& seen :
+       seen_by(solved_.occluder, optics_of(solved_), gather_.lookup(), samples.rays, samples.keys, luminaires_)) {
     const auto ray = static_cast<Eigen::Index>(samples.of_rays[seen.ray]);
     if (seen.outlook) all.brought.outlook[ray] += seen.share.mean();
     if (seen.luminaire != nullptr) {
@@ -357,7 +359,7 @@ void FinalGather::see_layers() {
       }
     }
     for (const SeenPatch& seen :
-         seen_by(solved_.occluder, *solved_.lights.lighting.paths.optics(), gather_.lookup(), rays, luminaires_)) {
+         seen_by(solved_.occluder, optics_of(solved_), gather_.lookup(), rays, {}, luminaires_)) {
       const Eigen::Index pixel = at[seen.ray];
       // The first on the way of a ray comes first.
       if (!seen.patch || sums_.patch[static_cast<std::size_t>(pixel)] >= 0) continue;

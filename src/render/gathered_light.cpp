@@ -242,6 +242,8 @@ bool is_plain(const SolvedLight& light, PatchIndex patch) {
   return light.occluder.optics().at(light.mesh.polygon[patch]) == nullptr;
 }
 
+const SurfaceOptics& optics_of(const SolvedLight& light) { return *light.lights.lighting.paths.optics(); }
+
 std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
   if (light.other_side.empty() || light.other_side[patch] == patch) return std::nullopt;
   return light.other_side[patch];
@@ -255,6 +257,13 @@ struct GatheredLight::Stop {
   double distance = 0;       // meters, along the path
   bool is_specular = false;  // a mirror or a clear face, or met by way of one
   Spectrum weight;           // the share of its radiosity that arrives
+};
+
+// The stops of rays, and how far each ray looks: up to the end of its path with the largest share of the light, which
+// may be infinitely far.
+struct GatheredLight::Stops {
+  std::vector<Stop> all;
+  std::vector<double> distances;
 };
 
 GatheredLight::GatheredLight(const SolvedLight& solved) : solved_(solved), lookup_(solved.mesh) {}
@@ -281,17 +290,30 @@ LitPoint GatheredLight::lit_point(const PatchPoint& at, std::uint32_t sample, st
   return {{at.point, solved_.mesh.normal[at.patch], solved_.mesh.polygon[at.patch]}, sample, seed, aim};
 }
 
-std::vector<GatheredLight::Stop> GatheredLight::stops_of(std::vector<Ray> rays, std::uint64_t seed) const {
+GatheredLight::Stops GatheredLight::stops_of(std::vector<Ray> rays, std::uint64_t seed) const {
   const Occluder& occluder = solved_.occluder;
-  std::vector<Stop> stops;
-  walk(occluder, *solved_.lights.lighting.paths.optics(), std::move(rays), {.seed = seed},
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Stops stops{{}, std::vector<double>(rays.size(), far)};
+  std::vector<double> largest(rays.size(), 0);
+  const auto look = [&](const SpecularPath& path, double share, double distance) {
+    if (!(share > largest[path.start])) return;
+    largest[path.start] = share;
+    stops.distances[path.start] = distance;
+  };
+  walk(occluder, optics_of(solved_), std::move(rays), {.seed = seed},
        [&](const SpecularPath& path, const std::optional<Hit>& hit) {
-         if (!hit) return Continuation::ends;
+         const double throughput = path.throughput.mean();
+         if (!hit) {
+           look(path, throughput, far);
+           return Continuation::ends;
+         }
+         const double distance = path.distance + hit->distance;
+         const double profile = occluder.optics().nonspecular_profile(hit->polygon, hit->direction);
+         look(path, throughput * profile * occluder.optics().nonspecular_fraction(hit->polygon, hit->side), distance);
          const bool is_specular = occluder.optics().at(hit->polygon) != nullptr;
          if (const auto patch = lookup_.patch_at(hit->polygon, hit->side, hit->point))
-           stops.push_back({path.start, *patch, hit->point, path.distance + hit->distance,
-                            is_specular || path.reflections > 0,
-                            path.throughput * occluder.optics().nonspecular_profile(hit->polygon, hit->direction)});
+           stops.all.push_back({path.start, *patch, hit->point, distance, is_specular || path.reflections > 0,
+                                path.throughput * profile});
          return Continuation::specular;
        });
   return stops;
@@ -339,7 +361,7 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
     points.push_back(lit_point({stop.point, patch}, sample, hash({seed, stream::lights_of_bounce}), aims));
   }
   const Field direct = light_samples(solved_.lights, points, 2);
-  const std::vector<Stop> next = stops_of(std::move(rays), hash({seed, stream::panes_of_bounce}));
+  const std::vector<Stop> next = stops_of(std::move(rays), hash({seed, stream::panes_of_bounce})).all;
   const Field onward =
       sums_of_rays(next, arriving(next, bounces_left - 1, hash({seed, stream::next_bounce})), near.size());
   for (std::size_t n = 0; n < near.size(); ++n) {
@@ -349,18 +371,6 @@ Field GatheredLight::arriving(const std::vector<Stop>& stops, int bounces_left, 
         stop.weight * reflectance_at(solved_, stop.patch, stop.point) * (direct.row(row) + onward.row(row));
   }
   return found;
-}
-
-// How far each ray looks: up to the stop that counts most.
-std::vector<double> GatheredLight::distances_of_rays(const std::vector<Stop>& stops, std::size_t rays) {
-  std::vector<double> distances(rays, std::numeric_limits<double>::infinity());
-  std::vector<double> largest(rays, 0);
-  for (const Stop& stop : stops) {
-    if (!(stop.weight.mean() > largest[stop.ray])) continue;
-    largest[stop.ray] = stop.weight.mean();
-    distances[stop.ray] = stop.distance;
-  }
-  return distances;
 }
 
 IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t key, double least, double most,
@@ -373,8 +383,7 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
   for (const Vector& direction : hemisphere.directions(seed))
     rays.push_back({at.point, direction, mesh.polygon[at.patch]});
   const std::size_t count = rays.size();
-  const std::vector<Stop> stops = stops_of(std::move(rays), hash({seed, stream::panes_of_gather}));
-  const std::vector<double> distances = distances_of_rays(stops, count);
+  const auto [stops, distances] = stops_of(std::move(rays), hash({seed, stream::panes_of_gather}));
   const HemisphereIrradiance found =
       hemisphere.irradiance(sums_of_rays(stops, arriving(stops, options.most_bounces, seed), count), distances);
 

@@ -134,6 +134,9 @@ struct SolvedLight {
 /// The reflectance at a point of a patch: that of the texel where a picture is on it, else the patch's.
 Spectrum reflectance_at(const SolvedLight& light, PatchIndex patch, const Point& point);
 
+/// The optics of the clear faces and mirrors.
+const SurfaceOptics& optics_of(const SolvedLight& light);
+
 /// False where only the solution has the scattered light: at clear faces and mirrors.
 bool is_plain(const SolvedLight& light, PatchIndex patch);
 
@@ -179,10 +182,10 @@ class GatheredLight {
   struct Stop;
   /// The rays to the sky that a place of a patch gets.
   SkyAim aim_at(PatchIndex patch) const;
-  std::vector<Stop> stops_of(std::vector<Ray> rays, std::uint64_t seed) const;
+  struct Stops;
+  Stops stops_of(std::vector<Ray> rays, std::uint64_t seed) const;
   Field arriving(const std::vector<Stop>& stops, int bounces_left, std::uint32_t seed) const;
   bool is_near(const Stop& stop) const;
-  static std::vector<double> distances_of_rays(const std::vector<Stop>& stops, std::size_t rays);
   static Field sums_of_rays(const std::vector<Stop>& stops, const Field& arriving, std::size_t rays);
 
   const SolvedLight& solved_;

@@ -147,7 +147,8 @@ CornerWeights with_every_vertex(const PatchMesh& mesh, CornerWeights weights, co
 
 struct PixelRays {
   std::vector<Ray> rays;
-  std::vector<Eigen::Index> pixels;  // one for each ray
+  std::vector<Eigen::Index> pixels;  // one for each ray, as keys
+  std::vector<std::uint64_t> keys;
 };
 
 // The rays of a tile, pixel by pixel. A pixel has n^2 rays, one in each cell of an n x n grid. In the canonical
@@ -165,6 +166,7 @@ PixelRays camera_rays(const Lens& lens, const RenderOptions& options, const Pixe
         if (!ray) continue;
         all.rays.push_back(*ray);
         all.pixels.push_back(static_cast<Eigen::Index>(y) * options.width + x);
+        all.keys.push_back(static_cast<std::uint64_t>(all.pixels.back() * n * n + sample));
       }
     }
   }
@@ -193,9 +195,10 @@ std::vector<SeenLuminaire> seen_luminaires(const std::vector<Luminaire>& luminai
 }
 
 std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
-                               const std::vector<Ray>& rays, const std::vector<SeenLuminaire>& luminaires) {
+                               const std::vector<Ray>& rays, std::span<const std::uint64_t> keys,
+                               const std::vector<SeenLuminaire>& luminaires) {
   std::vector<SeenPatch> all;
-  walk(occluder, optics, rays, {.least_throughput = 0.01},
+  walk(occluder, optics, rays, {.min_throughput = 0.01, .keys = keys},
        [&](const SpecularPath& path, const std::optional<Hit>& hit) {
          SeenPatch seen{.ray = path.start, .direction = path.ray.direction, .share = path.throughput};
          seen.outlook = path.crossings > 0;
@@ -267,8 +270,8 @@ Image render(const PatchMesh& mesh, const SmoothField& radiance, const Occluder&
 
   const std::vector<PixelTile> tiles = tiles_of(options.width, options.height);
   parallel_for(tiles.size(), Stage::render, observer, [&](std::size_t index) {
-    const auto [rays, pixels] = camera_rays(lens, options, tiles[index]);
-    for (const SeenPatch& seen : seen_by(occluder, optics, lookup, rays, options.luminaires)) {
+    const auto [rays, pixels, keys] = camera_rays(lens, options, tiles[index]);
+    for (const SeenPatch& seen : seen_by(occluder, optics, lookup, rays, keys, options.luminaires)) {
       const Eigen::Index pixel = pixels[seen.ray];
       const Spectrum share = seen.share / rays_per_pixel;
       if (seen.outlook) image.outlook[pixel] += share.mean();

@@ -48,9 +48,11 @@ struct SeenPatch {
 std::vector<SeenLuminaire> seen_luminaires(const std::vector<Luminaire>& luminaires, const Vector& up);
 
 /// The patches that rays see: the first that each meets and, as long as that is clear or a mirror, those behind it and
-/// in it. Rays pass sides without patches and end on luminaires.
+/// in it. Rays pass sides without patches and end on luminaires. Roulette for weak paths follows from `keys`,
+/// one per ray.
 std::vector<SeenPatch> seen_by(const Occluder& occluder, const SurfaceOptics& optics, const PatchLookup& lookup,
-                               const std::vector<Ray>& rays, const std::vector<SeenLuminaire>& luminaires = {});
+                               const std::vector<Ray>& rays, std::span<const std::uint64_t> keys,
+                               const std::vector<SeenLuminaire>& luminaires = {});
 
 /// Patch values as a smooth field, for display and for values at points.
 struct SmoothField {

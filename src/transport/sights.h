@@ -65,7 +65,7 @@ class Sights {
   std::vector<Seen> of_rays(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
 
   /// The same by geometry only: every ray continues from clear polygons and mirrors, whatever their colors. At a clear
-  /// polygon it is mirrored as SpecularFace::mirrored_rays() decides, else it passes straight through.
+  /// polygon it is mirrored as SpecularSurface::mirrored_rays() decides, else it passes straight through.
   std::vector<SeenWay> along_ways(PatchIndex patch, std::vector<Ray> rays, std::uint32_t seed) const;
 
   /// Whether the side that was hit has patches.

@@ -79,7 +79,7 @@ Image draft(const Simulation& simulation, const Camera& camera, int width, int h
   const Scene& scene = simulation.world->scene();
   const Occluder& occluder = simulation.world->all_faces();
   const SmoothField radiance = smooth(simulation.mesh, display_radiance(simulation), simulation.problem.area, occluder);
-  const SurfaceOptics& optics = *simulation.world->sensor_lighting().paths.optics();
+  const SurfaceOptics optics(simulation.world->sensor_scene(), simulation.world->tracing().reflections());
   return render(simulation.mesh, radiance, occluder, optics, camera, picture_up(camera, scene.up, scene.north),
                 {.width = width,
                  .height = height,

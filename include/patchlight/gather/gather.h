@@ -28,7 +28,8 @@ struct RadiosityErrors {
 /// How the light at sensors is sampled.
 struct GatherOptions {
   int least_rays = 4;       ///< shadow rays to a bright patch before the sensor, unless these are too many
-  int rays = 4096;          ///< to bright patches, in proportion to their possible light; as many over the hemisphere
+  int rays = 4096;          ///< to bright patches, in proportion to their possible light; as many over the hemisphere,
+                            ///< and as many towards clear faces and mirrors
   int most_rays = 1 << 18;  ///< if the relative standard error is above wanted_error
   double wanted_error = 0.01;  ///< requested relative standard error of a sensor
   std::uint64_t seed = 1;
@@ -56,12 +57,14 @@ struct GatheredIrradiance {
   SensorErrors errors;
 };
 
-/// Computes irradiance at points by gathering the solved radiosity, in two parts.
+/// Computes irradiance at points by gathering the solved radiosity, in two parts. Columns are the bands of the scene,
+/// or any number of radiosities if no clear face or mirror has a color.
 /// - Bright patches: their radiosity exceeds twice the irradiance that a few first rays find at the sensor. Each
 ///   contributes its closed-form form factor times its visible fraction by shadow rays. The number of rays depends on
 ///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. If there are very
 ///   many, some are chosen at random.
-/// - All others: by rays over the hemisphere, distributed as the cosine.
+/// - All others: by rays over the hemisphere, distributed as the cosine. They continue through clear faces and mirrors.
+///   Bright patches count in mirrors only.
 /// In a mesh of at most rays / least_rays patches all count as bright, so that sensors without occluders are exact.
 ///
 /// Rays form replicates with independent random shifts, whose scatter gives the standard error. Its lower bound is the
