@@ -150,7 +150,8 @@ def solution(tool):
 
 
 def seeds(tool, scratch, wanted):
-    """For every kind the good files, the one that is damaged first, and those of the wanted commands that read them."""
+    """For every kind the good files, the one that is damaged first, and those of the wanted commands that read them.
+    Kinds that none of these commands reads are left out."""
     everything = {"room.obj": ROOM.encode(), "room.mtl": MATERIALS.encode(), "lamp.ies": IES.encode(), "w.epw": EPW.encode(),
                   "spots.pts": POINTS.encode(), "scene.toml": (SCENE + SKIES[0]).encode(), "part.rad": PART.encode()}
     solve = ["--patches", "30", "--memory", "1GB", "-q", "-o", "out.ply"]
@@ -180,8 +181,10 @@ def seeds(tool, scratch, wanted):
     if "render" in wanted:
         render = ["render", "room.obj", "--solution", "s.vtp", "-o", "out.png", "--size", "16x16", "-q"]
         cases["vtp"] = [({**everything, "s.vtp": solution(tool)}, "s.vtp", [render])]
-    return {kind: [(files, name, [words for words in commands if words[0] in wanted]) for files, name, commands in some]
-            for kind, some in cases.items()}
+    cases = {kind: [(files, name, [words for words in commands if words[0] in wanted]) for files, name, commands in some]
+             for kind, some in cases.items()}
+    cases = {kind: [case for case in some if case[2]] for kind, some in cases.items()}
+    return {kind: some for kind, some in cases.items() if some}
 
 
 def damaged(data, chance):
@@ -269,6 +272,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="patchlight-mutate-") as scratch:
         cases = seeds(options.tool, pathlib.Path(scratch), options.commands)
         kinds = options.kinds or sorted(cases)
+        if not kinds or not set(kinds) <= set(cases):
+            parser.error(f"the commands read these kinds: {', '.join(sorted(cases)) or 'none'}")
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             numbers = iter(range(options.first, options.first + options.runs))
             pending = set()
