@@ -13,7 +13,6 @@
 #include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
 #include "plan/choose_storage.h"
-#include "plan/planned_scene.h"
 
 #include <utility>
 

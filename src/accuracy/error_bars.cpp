@@ -6,7 +6,6 @@
 #include "solve/scattering.h"
 
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 namespace patchlight {

@@ -12,7 +12,6 @@
 #include "transport/ray_transport.h"
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -2,12 +2,12 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/near_match.h"
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "base/tolerances.h"
 #include "base/vectors.h"
+#include "base/words.h"
 #include "form_factor/patch_shape.h"
 #include "scene/room_body.h"
 #include "scene/solids.h"
@@ -160,10 +160,7 @@ std::set<std::string> names_in(const Scene& scene) {
 // "a, b, c and 12 more, which patchlight check --all lists"
 std::string first_of(const std::vector<std::string>& names) {
   constexpr std::size_t few = 20;
-  std::string list;
-  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k == 0 ? "" : ", ") + names[k];
-  if (names.size() <= few) return list;
-  return list + " and " + std::to_string(names.size() - few) + " more, which patchlight check --all lists";
+  return first_few(names, few) + (names.size() > few ? ", which patchlight check --all lists" : "");
 }
 
 // A material, object, group or room, or one side of it.

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -99,6 +98,7 @@ std::string open_npy(const std::filesystem::path& file, std::ifstream& stream) {
 
 template <class Number>
 std::string type_of() {
+  if constexpr (sizeof(Number) == 1) return "|u1";
   return std::string(std::is_floating_point_v<Number> ? "<f" : "<i") + std::to_string(sizeof(Number));
 }
 
@@ -192,12 +192,7 @@ void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values)
 }
 
 void write_npy(const std::filesystem::path& file, std::span<const std::uint8_t> values) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << header("|u1", std::to_string(values.size()) + ',');
-    stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size()));
-    close_or_fail(stream, file);
-  });
+  write_npy_numbers(file, values);
 }
 
 NpyReader::NpyReader(const std::filesystem::path& file) : file_(file) {
@@ -252,19 +247,7 @@ Eigen::MatrixXd read_npy(const std::filesystem::path& file, std::size_t rows, st
 }
 
 std::vector<std::uint8_t> read_npy_bytes(const std::filesystem::path& file, std::size_t count) {
-  std::ifstream stream;
-  const std::string text = open_npy(file, stream);
-  const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
-  const bool good = value_of(text, "'descr':").starts_with("'|u1'") && shape == std::vector{count} &&
-                    std::filesystem::file_size(file) - static_cast<std::uintmax_t>(stream.tellg()) == count;
-  if (!good) {
-    throw InputError(file.string(), "found another array than one of " + std::to_string(count) +
-                                        " bytes; compute the form factors again");
-  }
-  std::vector<std::uint8_t> values(count);
-  stream.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count));
-  if (!stream) throw InputError(file.string(), "cannot be read to its end");
-  return values;
+  return read_npy_as<std::vector<std::uint8_t>, std::uint8_t>(file, count);
 }
 
 }  // namespace patchlight

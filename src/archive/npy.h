@@ -9,7 +9,6 @@
 #include <fstream>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace patchlight {

@@ -7,7 +7,6 @@
 #include "archive/npy.h"
 #include "archive/scene_file.h"
 #include "archive/scene_hash.h"
-#include "base/parallel.h"
 #include "files/sha256.h"
 #include "optics/surface_optics.h"
 #include "output/file/whole_file.h"

@@ -7,7 +7,6 @@
 #include "output/vtk/read_vtk.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/world.h"
-#include "plan/planned_scene.h"
 #include "scene/extent.h"
 #include "scene/solids.h"
 #include "visibility/flat_polygon.h"
@@ -80,6 +79,11 @@ void require_places(const PatchMesh& mesh, const Scene& scene, const std::filesy
   }
 }
 
+bool has_patches(const PatchMesh& mesh, PolygonIndex polygon, Side side) {
+  const PatchRange range = mesh.patches_on(polygon, side);
+  return range.begin != range.end;
+}
+
 PatchMesh mesh_of(StoredSolution& stored, const Scene& scene) {
   PatchMesh mesh;
   mesh.vertices = std::move(stored.vertices);
@@ -106,11 +110,8 @@ PatchMesh mesh_of(StoredSolution& stored, const Scene& scene) {
   }
   mesh.first_patch.push_back(next);
   for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    const auto has = [&](Side side) {
-      const PatchRange range = mesh.patches_on(polygon, side);
-      return range.begin != range.end;
-    };
-    if (is_sheet(scene, polygon) && has(Side::front) && has(Side::back)) mesh.sheets.push_back(polygon);
+    if (is_sheet(scene, polygon) && has_patches(mesh, polygon, Side::front) && has_patches(mesh, polygon, Side::back))
+      mesh.sheets.push_back(polygon);
   }
   return mesh;
 }
@@ -119,12 +120,8 @@ PatchMesh mesh_of(StoredSolution& stored, const Scene& scene) {
 KeptSides sides_of(const PatchMesh& mesh, const Scene& scene) {
   KeptSides sides;
   for (PolygonIndex polygon = 0; polygon < scene.polygons.size(); ++polygon) {
-    const auto has = [&](Side side) {
-      const PatchRange range = mesh.patches_on(polygon, side);
-      return static_cast<std::uint8_t>(range.begin != range.end ? 1 : 0);
-    };
-    sides.front.push_back(has(Side::front));
-    sides.back.push_back(has(Side::back));
+    sides.front.push_back(has_patches(mesh, polygon, Side::front) ? 1 : 0);
+    sides.back.push_back(has_patches(mesh, polygon, Side::back) ? 1 : 0);
   }
   sides.geometry = geometry_of(scene, sides);
   return sides;

@@ -137,8 +137,4 @@ Choice choose(std::span<const double> probabilities, double u) {
   return choice;
 }
 
-double square_to_cosine_hemisphere_pdf(const Vector& direction) {
-  return direction.z() > 0 ? direction.z() / std::numbers::pi : 0;
-}
-
 }  // namespace patchlight

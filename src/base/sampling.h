@@ -61,9 +61,6 @@ Vector square_to_cosine_hemisphere(double u, double v);
 /// The same around another unit normal.
 Vector cosine_direction(const Vector& normal, double u, double v);
 
-/// Its density with respect to solid angle, 1/sr; zero below the horizon.
-double square_to_cosine_hemisphere_pdf(const Vector& direction);
-
 /// 2^d for each of `size` doublings d; 1 for all where there are none.
 inline Eigen::ArrayXd multiples(std::span<const std::uint8_t> doublings, Eigen::Index size) {
   assert(doublings.empty() || doublings.size() == static_cast<std::size_t>(size));

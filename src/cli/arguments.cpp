@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/output/write_result.h"
 
-#include "base/near_match.h"
+#include "base/words.h"
 #include "cli/help_texts.h"
 #include "cli/option_names.h"
 #include "cli/options.h"

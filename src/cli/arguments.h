@@ -1,6 +1,5 @@
 #pragma once
 
-#include "patchlight/base/geometry.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/views/picture.h"

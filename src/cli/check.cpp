@@ -1,6 +1,5 @@
-#include "base/near_match.h"
 #include "base/parallel.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"
@@ -43,17 +42,15 @@ std::string rest_line(std::size_t count, std::size_t shown) {
   return "  and " + std::to_string(count - shown) + " more (--all lists them)\n";
 }
 
-template <class Values>
-std::string listed(const Values& values, const char* separator) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : separator) + rounded(value, digits);
-  return text;
+std::string listed_numbers(const auto& values, const std::string& separator = ", ") {
+  return listed_as(
+      values, [](double value) { return rounded(value, digits); }, separator);
 }
 
 std::string size_line(const Scene& scene, const SceneReport& report) {
-  return "size: " + listed(Vector(report.bounds.sizes()), " x ") + " m, from (" + listed(report.bounds.min(), ", ") +
-         ") to (" + listed(report.bounds.max(), ", ") + "), one model unit being " +
-         rounded(scene.metres_per_unit, digits) + " m\n";
+  return "size: " + listed_numbers(Vector(report.bounds.sizes()), " x ") + " m, from (" +
+         listed_numbers(report.bounds.min()) + ") to (" + listed_numbers(report.bounds.max()) +
+         "), one model unit being " + rounded(scene.metres_per_unit, digits) + " m\n";
 }
 
 std::string counts_lines(const SceneReport& report, std::size_t faces) {
@@ -83,7 +80,7 @@ std::string sides_lines(const SceneReport& report) {
 // "; specular reflectance 0.9, 0.9, 0.9" for a mirror; empty for others.
 std::string part(const char* name, const Spectrum& values) {
   if (!(values > 0).any()) return {};
-  return std::string("; ") + name + ' ' + listed(values, ", ");
+  return std::string("; ") + name + ' ' + listed_numbers(values);
 }
 
 // The width of a column with these names, at most 40 characters.
@@ -107,7 +104,7 @@ std::string material_lines(const SceneReport& report, bool all) {
   text << "materials: " << report.materials.size() << '\n';
   for (const MaterialFacts& facts : materials) {
     text << "  " << std::left << std::setw(static_cast<int>(width_of(names))) << shown_name(facts.material.name)
-         << "  reflectance " << listed(facts.material.reflectance, ", ")
+         << "  reflectance " << listed_numbers(facts.material.reflectance)
          << part("specular reflectance", facts.material.specular_reflectance)
          << part("transmittance", facts.material.transmittance)
          << ((facts.material.transmittance > 0).any() ? ", index " + rounded(facts.material.index, digits) : "")
@@ -164,7 +161,7 @@ std::string lamp_lines(const SceneReport& report, std::size_t luminaires) {
   text << '\n';
   for (const MaterialFacts& facts : report.materials) {
     if (!(facts.material.exitance > 0).any()) continue;
-    text << "  " << shown_name(facts.material.name) << "  flux " << listed(facts.flux, ", ") << " W, "
+    text << "  " << shown_name(facts.material.name) << "  flux " << listed_numbers(facts.flux) << " W, "
          << rounded(facts.luminous_flux, digits) << " lm from " << rounded(facts.area, digits) << " m^2\n";
   }
   return text.str();
@@ -173,19 +170,19 @@ std::string lamp_lines(const SceneReport& report, std::size_t luminaires) {
 std::string daylight_lines(const Scene& scene) {
   std::ostringstream text;
   if (scene.sun) {
-    text << "sun: " << listed(scene.sun->normal_irradiance, ", ") << " W/m^2 direct normal, from ("
-         << listed(scene.sun->direction, ", ") << ")\n";
+    text << "sun: " << listed_numbers(scene.sun->normal_irradiance) << " W/m^2 direct normal, from ("
+         << listed_numbers(scene.sun->direction) << ")\n";
   }
   if (!scene.sky) return text.str();
   const Sky& sky = *scene.sky;
   text << "sky: " << name_of(sky.kind) << ", ";
   if (sky.horizontal_irradiance.size() > 0) {
-    text << listed(sky.horizontal_irradiance, ", ") << " W/m^2 horizontal, under the open sky\n";
+    text << listed_numbers(sky.horizontal_irradiance) << " W/m^2 horizontal, under the open sky\n";
   } else {
-    text << listed(sky.zenith_radiance, ", ") << " W/(m^2 sr) from the zenith\n";
+    text << listed_numbers(sky.zenith_radiance) << " W/(m^2 sr) from the zenith\n";
   }
   const bool is_black = !(sky.ground_radiance > 0).any();
-  text << "ground: " << (is_black ? "black" : listed(sky.ground_radiance, ", ") + " W/(m^2 sr)") << '\n';
+  text << "ground: " << (is_black ? "black" : listed_numbers(sky.ground_radiance) + " W/(m^2 sr)") << '\n';
   return text.str();
 }
 

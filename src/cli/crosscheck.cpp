@@ -1,5 +1,5 @@
 #include "base/parallel.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"

@@ -4,7 +4,7 @@
 #include "archive/ray_row_files.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"

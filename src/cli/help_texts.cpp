@@ -3,10 +3,10 @@
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 
+#include "base/words.h"
 #include "cli/parse_value.h"
 
 #include <array>
-#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -358,12 +358,6 @@ bool contains_word(std::string_view words, std::string_view word) {
   return false;
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& separator) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : separator) + word;
-  return list;
-}
-
 }  // namespace
 
 std::span<const CommandText> command_texts() { return commands; }
@@ -386,11 +380,11 @@ std::string filled_in(std::string_view text) {
   for (const Effect effect : simulated_effects())
     if (effect != Effect::closure) effects.emplace_back(name_of(effect));
   const std::array<std::pair<std::string, std::string>, 7> lists = {
-      {{"{formats}", joined(readable_formats(), ", ")},
-       {"{formats|}", joined(readable_formats(), "|")},
+      {{"{formats}", listed(readable_formats())},
+       {"{formats|}", listed(readable_formats(), "|")},
        {"{solvers}", solver_names(", ")},
        {"{solvers|}", solver_names("|")},
-       {"{effects}", joined(effects, ", ")},
+       {"{effects}", listed(effects)},
        {"{patches}", std::to_string(default_patches)},
        {"{first_patches}", std::to_string(first_patches)}}};
   std::string result(text);

@@ -1,5 +1,5 @@
 // Options of the commands that light a model: check, init, solve, render, plan, relight.
-#include "base/near_match.h"
+#include "base/words.h"
 #include "cli/distinct_files.h"
 #include "cli/option_names.h"
 #include "cli/options.h"
@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "patchlight/output/write_result.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/options.h"
 #include "output/image/write_image.h"
 #include "output/vtk/write_vtk.h"

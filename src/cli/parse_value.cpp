@@ -1,6 +1,6 @@
 #include "cli/parse_value.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 
 #include <algorithm>
 #include <array>
@@ -148,9 +148,8 @@ Solver solver_named(const std::string& option, const std::string& text) {
 }
 
 std::string solver_names(const std::string& separator) {
-  std::string names;
-  for (const Solver solver : all_solvers()) names += (names.empty() ? "" : separator) + name_of(solver);
-  return names;
+  return listed_as(
+      all_solvers(), [](Solver solver) { return name_of(solver); }, separator);
 }
 
 }  // namespace patchlight::cli

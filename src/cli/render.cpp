@@ -8,7 +8,7 @@
 #include "archive/read_solution.h"
 #include "archive/scene_hash.h"
 #include "base/parallel.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"

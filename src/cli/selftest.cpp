@@ -1,5 +1,5 @@
 #include "base/parallel.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/commands.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 

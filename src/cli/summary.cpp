@@ -1,6 +1,6 @@
 #include "cli/summary.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "cli/messages.h"
 #include "cli/option_names.h"
 #include "light/photometry.h"
@@ -21,9 +21,7 @@ std::string parts(const AccuracyStep& step) {
 
 // Values per band, for three bands as R, G, B.
 std::string bands(const Eigen::ArrayXd& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + rounded(value);
-  return text;
+  return listed_as(values, [](double value) { return rounded(value); });
 }
 
 std::string convergence(const Report& report) {

@@ -4,7 +4,6 @@
 #include "base/tolerances.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>

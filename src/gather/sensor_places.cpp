@@ -208,12 +208,11 @@ std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Facet> fa
 // Per point 1 when it is inside a wall, as place_sensors() has it.
 std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& sides, const Occluder& occluder,
                                        std::span<const Facet> facets, std::span<const Point> points) {
-  KeptSides automatic = kept_sides(scene, Sides::automatic);
-  const std::shared_ptr<const SceneGeometry> geometry = automatic.geometry;
+  const std::shared_ptr<const SceneGeometry> geometry = geometry_of(scene, sides);
   const Walls walls{scene,
                     occluder,
                     facets,
-                    {sides, std::move(automatic)},
+                    {sides, kept_sides(scene, Sides::automatic, {}, geometry)},
                     geometry->shells,
                     welded(scene.vertices, weld_distance(scene)),
                     tolerance_of_coordinates * extent_of(scene),

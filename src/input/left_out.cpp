@@ -1,5 +1,6 @@
 #include "input/left_out.h"
 
+#include "base/words.h"
 #include "input/text.h"
 #include "scene/model_face.h"
 

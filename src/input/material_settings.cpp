@@ -3,15 +3,13 @@
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/near_match.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "input/materials.h"
 #include "input/text.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <numbers>

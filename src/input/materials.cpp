@@ -1,7 +1,7 @@
 #include "input/materials.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "input/text.h"
 
 #include <algorithm>
@@ -67,9 +67,7 @@ std::vector<UnsimulatedMaterials> counted(std::size_t mirrors, std::size_t glass
 
 std::string listed_shares(const Spectrum& shares) {
   if ((shares == shares[0]).all()) return rounded(shares[0], 4);
-  std::string text;
-  for (const double share : shares) text += (text.empty() ? "" : ", ") + rounded(share, 4);
-  return text;
+  return listed_as(shares, [](double share) { return rounded(share, 4); });
 }
 
 Diagnostics note_on(DiagnosticCode code, const std::string& sentence, const std::vector<std::string>& names) {

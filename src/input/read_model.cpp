@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
-#include "base/near_match.h"
+#include "base/words.h"
 #include "files/sha256.h"
 #include "input/materials.h"
 #include "input/text.h"

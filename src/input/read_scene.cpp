@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "files/sha256.h"
 #include "input/material_settings.h"
 #include "input/materials.h"

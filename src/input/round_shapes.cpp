@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <span>
 
 namespace patchlight {
 namespace {

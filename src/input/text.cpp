@@ -140,10 +140,4 @@ std::vector<std::string_view> between_commas(std::string_view text) {
   return parts;
 }
 
-std::string listed(std::span<const std::string> names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 }  // namespace patchlight

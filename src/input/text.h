@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -60,9 +59,6 @@ std::optional<Number> whole_number_in(std::string_view word) {
 
 /// The parts of a text between commas, at least one.
 std::vector<std::string_view> between_commas(std::string_view text);
-
-/// "a, b, c".
-std::string listed(std::span<const std::string> names);
 
 /// "room.obj:12".
 inline std::string at_line(const std::filesystem::path& file, std::uint32_t line) {

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "base/tolerances.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -99,46 +98,6 @@ std::vector<Row> rows_of(const PatchMesh& mesh) {
   return rows;
 }
 
-// Means over the patches of value(k, point) in the middle of the common part with each patch k of `other`.
-template <typename Value>
-Field means_of(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns, Value value) {
-  assert(mesh.first_patch.size() == other.first_patch.size());
-  const std::vector<Row> rows = rows_of(other);
-  Field means = Field::Zero(mesh.size(), columns);
-  parallel_for(mesh.size(), [&](std::size_t i) {
-    const auto patch = static_cast<PatchIndex>(i);
-    const Row& row = rows[side_slot(mesh.polygon[i], mesh.side[i])];
-    double area = 0;
-    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
-      const double share = area_vector(common).norm();
-      if (share == 0) return;
-      means.row(patch) += share * value(k, area_centroid(common));
-      area += share;
-    });
-    assert(area > 0);
-    means.row(patch) /= area;
-  });
-  return means;
-}
-
-// Around the mean.
-struct Bounds {
-  double least;
-  double most;
-};
-
-// As much of a slope as keeps the corners of patch i within bounds.
-Eigen::Vector3d limited(const Eigen::Vector3d& slope, const PatchMesh& mesh, PatchIndex i, const Bounds& bounds) {
-  double share = 1;
-  const PatchCorners corners = mesh.corner_points(i);
-  for (int k = 0; k < corners.count; ++k) {
-    const double rise = slope.dot(corners.points[static_cast<std::size_t>(k)] - mesh.centroid[i]);
-    if (rise > bounds.most) share = std::min(share, bounds.most / rise);
-    if (rise < bounds.least) share = std::min(share, bounds.least / rise);
-  }
-  return share * slope;
-}
-
 // The middles of edges that are those of a patch still, in the order of the cuts.
 std::vector<Middle> hanging(const PatchMesh& mesh) {
   if (mesh.middles.empty()) return {};
@@ -209,51 +168,30 @@ Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fie
   return mean_around(mesh, area, values.square()).sqrt();
 }
 
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns,
+                   const std::function<Field(PatchIndex, const Point&)>& value) {
+  assert(mesh.first_patch.size() == other.first_patch.size());
+  const std::vector<Row> rows = rows_of(other);
+  Field means = Field::Zero(mesh.size(), columns);
+  parallel_for(mesh.size(), [&](std::size_t i) {
+    const auto patch = static_cast<PatchIndex>(i);
+    const Row& row = rows[side_slot(mesh.polygon[i], mesh.side[i])];
+    double area = 0;
+    for_overlaps(mesh, patch, other, row, [&](PatchIndex k, const std::vector<Point>& common) {
+      const double share = area_vector(common).norm();
+      if (share == 0) return;
+      means.row(patch) += share * value(k, area_centroid(common));
+      area += share;
+    });
+    assert(area > 0);
+    means.row(patch) /= area;
+  });
+  return means;
+}
+
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values) {
   assert(values.rows() == other.size());
-  return means_of(mesh, other, values.cols(), [&](PatchIndex k, const Point&) { return values.row(k); });
-}
-
-Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field) {
-  assert(field.values.rows() == other.size() && field.slopes.cols() == 3 * field.values.cols());
-  const Eigen::Index columns = field.values.cols();
-  return means_of(mesh, other, columns, [&](PatchIndex k, const Point& point) {
-    const Vector offset = point - other.centroid[k];
-    Field value = field.values.row(k);
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      value(0, c) += field.slopes.row(k).segment(3 * c, 3).matrix().dot(offset);
-    }
-    return value;
-  });
-}
-
-SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values) {
-  const PatchesAtVertices at_vertex(mesh);
-  SlopedField field{values, Field::Zero(values.rows(), 3 * values.cols())};
-  parallel_for(mesh.size(), [&](std::size_t row) {
-    const auto i = static_cast<PatchIndex>(row);
-    // Least squares over the patches around; without a slope across the patch.
-    Eigen::Matrix3d moments = mesh.area[i] * mesh.normal[i] * mesh.normal[i].transpose();
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(3, values.cols());
-    Field least = values.row(i);
-    Field most = values.row(i);
-    for (const std::uint32_t vertex : corner_vertices(mesh, i)) {
-      for (const PatchIndex j : at_vertex[vertex]) {
-        if (mesh.polygon[j] != mesh.polygon[i] || mesh.side[j] != mesh.side[i]) continue;
-        const Vector way = mesh.centroid[j] - mesh.centroid[i];
-        moments += way * way.transpose();
-        right += way * (values.row(j) - values.row(i)).matrix();
-        least = least.min(values.row(j));
-        most = most.max(values.row(j));
-      }
-    }
-    const Eigen::MatrixXd slope = moments.completeOrthogonalDecomposition().solve(right);
-    for (Eigen::Index c = 0; c < values.cols(); ++c) {
-      const Bounds bounds{least(0, c) - values(i, c), most(0, c) - values(i, c)};
-      field.slopes.row(i).segment(3 * c, 3) = limited(slope.col(c), mesh, i, bounds).transpose();
-    }
-  });
-  return field;
+  return average_over(mesh, other, values.cols(), [&](PatchIndex k, const Point&) -> Field { return values.row(k); });
 }
 
 Field vertex_means(const PatchMesh& mesh, const FieldView& patch_values, const CornerWeights& weights) {

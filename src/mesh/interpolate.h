@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -43,20 +44,10 @@ Field means_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Fie
 /// of threads. Costs about n + n' log n' + n sqrt(n') per side of a polygon.
 Field average_over(const PatchMesh& mesh, const PatchMesh& other, const FieldView& values);
 
-/// A field that is linear on every patch.
-struct SlopedField {
-  Field values;  ///< the means of the patches
-  Field slopes;  ///< three columns for each of `values`: the gradient, per meter
-};
-
-/// A field with slopes by least squares from the means of the surrounding patches: those on the same polygon side that
-/// share a corner. No corner exceeds the range of these patches (Barth and Jespersen, AIAA 89-0366), so a non-negative
-/// field stays non-negative.
-SlopedField with_slopes(const PatchMesh& mesh, const FieldView& values);
-
-/// The same for a field that is linear on every patch of `other`. The means depend on the relative position of both
-/// meshes only through the curvature of the field.
-Field average_over(const PatchMesh& mesh, const PatchMesh& other, const SlopedField& field);
+/// The same for a field that varies within the patches of `other`: value(k, point), a row with this number of columns,
+/// in the middle of the common part with each patch k.
+Field average_over(const PatchMesh& mesh, const PatchMesh& other, Eigen::Index columns,
+                   const std::function<Field(PatchIndex, const Point&)>& value);
 
 /// Weight of each patch (row) at each of its corners (column); the fourth of a triangle is not used.
 using CornerWeights = Eigen::Array<double, Eigen::Dynamic, 4, Eigen::RowMajor>;

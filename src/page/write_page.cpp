@@ -3,8 +3,8 @@
 #include "patchlight/gather/readings.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"

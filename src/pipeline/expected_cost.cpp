@@ -5,7 +5,6 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "lighting/direct_irradiance.h"
-#include "pipeline/problem_of.h"
 #include "plan/choose_storage.h"
 #include "plan/planned_scene.h"
 #include "transport/pair_sampler.h"

@@ -1,8 +1,8 @@
 #include "pipeline/local_cuts.h"
 
 #include "accuracy/refinement.h"
-#include "base/rounded.h"
 #include "base/sampling.h"
+#include "base/words.h"
 #include "plan/choose_storage.h"
 #include "plan/goal.h"
 

@@ -14,8 +14,9 @@ namespace {
 // Computed on first use.
 class LightingOnDemand {
  public:
-  const Lighting& of(const Scene& scene, const Tracing& tracing) {
-    std::call_once(once_, [&] { lighting_.emplace(lighting_of(scene, tracing)); });
+  // `make_scene` is called only for the light that is not known yet: it may copy.
+  const Lighting& of(const auto& make_scene, const Tracing& tracing) {
+    std::call_once(once_, [&] { lighting_.emplace(lighting_of(make_scene(), tracing)); });
     return *lighting_;
   }
 
@@ -44,25 +45,31 @@ std::shared_ptr<const World> World::in_bands(const std::vector<Eigen::Index>& ba
   return std::make_shared<const World>(std::make_shared<const Scene>(patchlight::in_bands(*scene_, bands)), plan);
 }
 
-const Lighting& World::lighting() const { return later_->planned.of(*planned_, tracing_); }
+const Lighting& World::lighting() const {
+  return later_->planned.of([this]() -> const Scene& { return *planned_; }, tracing_);
+}
 
 const Lighting& World::lighting_in_one_band() const {
   assert(lamp_color_.size() > 0);
   Eigen::Index brightest = 0;
   lamp_color_.maxCoeff(&brightest);
-  return later_->in_one_band.of(in_one_band(*planned_, brightest), tracing_);
+  return later_->in_one_band.of([&] { return in_one_band(*planned_, brightest); }, tracing_);
 }
 
 const Lighting& World::sensor_lighting() const {
-  return for_sensors_ == planned_ ? lighting() : later_->for_sensors.of(*for_sensors_, tracing_);
+  if (for_sensors_ == planned_) return lighting();
+  return later_->for_sensors.of([this]() -> const Scene& { return *for_sensors_; }, tracing_);
 }
 
 const Lighting& World::lighting_by_polygons() const {
-  Scene scene = *planned_;
-  scene.luminaires.clear();
-  scene.sun.reset();
-  scene.sky.reset();
-  return later_->by_polygons.of(scene, tracing_);
+  const auto without_other_light = [this] {
+    Scene scene = *planned_;
+    scene.luminaires.clear();
+    scene.sun.reset();
+    scene.sky.reset();
+    return scene;
+  };
+  return later_->by_polygons.of(without_other_light, tracing_);
 }
 
 }  // namespace patchlight

@@ -1,6 +1,6 @@
 #include "plan/decide.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "light/pane.h"
 #include "light/texture.h"
 #include "plan/survey.h"
@@ -15,7 +15,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -190,9 +189,8 @@ Decision interreflection(const EffectFacts& facts, const Request& request) {
 }
 
 std::string numbers_of(const std::vector<Eigen::Index>& bands) {
-  std::string list;
-  for (const Eigen::Index band : bands) list += (list.empty() ? "" : ", ") + std::to_string(band + 1);
-  return (bands.size() == 1 ? "band " : "bands ") + list;
+  const auto number = [](Eigen::Index band) { return std::to_string(band + 1); };
+  return (bands.size() == 1 ? "band " : "bands ") + listed_as(bands, number);
 }
 
 Decision colour(const EffectFacts& facts) {

@@ -1,7 +1,7 @@
 #include "plan/notes.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "mesh/mesher.h"
 #include "mesh/outline.h"
 #include "plan/survey.h"

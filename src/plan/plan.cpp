@@ -237,13 +237,15 @@ std::size_t patches_asked(const Request& request) {
 }
 
 KeptSides sides_for(const Scene& scene, const Request& request) {
-  const std::optional<KeptSides>& kept = request.mesh.kept_sides;
-  assert(!kept || kept->front.size() == scene.polygons.size());
-  KeptSides sides = kept ? *kept
-                         : kept_sides(scene, request.mesh.sides,
-                                      {.unreached = contains(request.effects.force, Effect::reach),
-                                       .turned_away = contains(request.effects.force, Effect::backs)});
-  sides.geometry = geometry_of(scene, sides);
+  if (!request.mesh.kept_sides) {
+    return kept_sides(scene, request.mesh.sides,
+                      {.unreached = contains(request.effects.force, Effect::reach),
+                       .turned_away = contains(request.effects.force, Effect::backs)});
+  }
+  KeptSides sides = *request.mesh.kept_sides;
+  assert(sides.front.size() == scene.polygons.size());
+  // The given sides may stem from a scene with other materials.
+  sides.geometry = std::make_shared<const SceneGeometry>(compute_geometry(scene));
   return sides;
 }
 

@@ -2,9 +2,8 @@
 
 #include "patchlight/base/diagnostics.h"
 
-#include "base/near_match.h"
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "light/photometry.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
@@ -318,12 +317,6 @@ bool is_name_of_lamp(const std::string& name) {
     if (words[k] == "light" && !is_of_thing) return true;
   }
   return false;
-}
-
-std::string first_few(std::span<const std::string> names, std::size_t few) {
-  std::string list;
-  for (std::size_t k = 0; k < std::min(few, names.size()); ++k) list += (k > 0 ? ", " : "") + names[k];
-  return names.size() > few ? list + " and " + std::to_string(names.size() - few) + " more" : list;
 }
 
 FirstLight first_light(const Scene& scene) {

@@ -16,9 +16,6 @@ namespace patchlight {
 /// gray" is a color.
 bool is_name_of_lamp(const std::string& name);
 
-/// "a, b, c" of up to `few` names, "and 3 more" of the rest.
-std::string first_few(std::span<const std::string> names, std::size_t few = 8);
-
 /// The area of all polygons, each once, m^2.
 double area_of_faces(const Scene& scene);
 

@@ -5,7 +5,6 @@
 #include "patchlight/views/views.h"
 
 #include "archive/scene_hash.h"
-#include "base/parallel.h"
 #include "cli/arguments.h"
 #include "cli/render.h"
 #include "cli/summary.h"

@@ -3,7 +3,6 @@
 #include "patchlight/simulate.h"
 #include "patchlight/transport/transport_operator.h"
 
-#include "base/near_match.h"
 #include "base/parallel.h"
 #include "cli/arguments.h"
 #include "cli/parse_value.h"

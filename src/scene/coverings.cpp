@@ -320,10 +320,17 @@ Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   return none ? Coverings{} : Coverings{std::move(over)};
 }
 
-Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
-  std::vector<ModelFace> faces;
-  std::vector<ModelFace> of_solids;
-  std::vector<ModelFace> lamps;
+namespace {
+
+// The faces under others.
+struct CoveredFaces {
+  std::vector<ModelFace> faces;      // under smaller ones, or equal ones
+  std::vector<ModelFace> of_solids;  // under larger ones
+  std::vector<ModelFace> lamps;      // those of them that emit
+};
+
+CoveredFaces covered_faces(const Scene& scene, const Coverings& coverings) {
+  CoveredFaces covered;
   for (PolygonIndex p = 0; 2 * std::size_t{p} < coverings.over.size(); ++p) {
     bool is_covered = false;
     bool is_hidden = false;
@@ -341,10 +348,17 @@ Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& covering
     }
     if (!is_covered && !is_hidden) continue;
     const ModelFace face = model_face(scene, scene.polygons[p]);
-    if (is_covered) faces.push_back(face);
-    if (is_hidden) of_solids.push_back(face);
-    if (is_dark_lamp) lamps.push_back(face);
+    if (is_covered) covered.faces.push_back(face);
+    if (is_hidden) covered.of_solids.push_back(face);
+    if (is_dark_lamp) covered.lamps.push_back(face);
   }
+  return covered;
+}
+
+}  // namespace
+
+Diagnostics problems_with_overlaps(const Scene& scene, const Coverings& coverings) {
+  auto [faces, of_solids, lamps] = covered_faces(scene, coverings);
   Diagnostics problems;
   const auto add = [&](DiagnosticCode code, std::vector<ModelFace> concerned, const std::string& what) {
     if (concerned.empty()) return;

@@ -1,8 +1,8 @@
 #include "scene/less_detail.h"
 
 #include "base/disjoint_sets.h"
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/shells.h"

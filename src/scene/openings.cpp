@@ -1,6 +1,6 @@
 #include "scene/openings.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "scene/coverings.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"

@@ -2,8 +2,8 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "light/texture.h"
 #include "scene/model_face.h"
 

@@ -1,7 +1,7 @@
 #include "patchlight/scene/sides.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "scene/extent.h"
 #include "scene/face_tree.h"
 #include "scene/model_face.h"
@@ -376,14 +376,15 @@ LitSolids lit_solids(const Scene& scene, const SceneGeometry& geometry, const st
   return lit;
 }
 
-KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark) {
+KeptSides automatic_sides(const Scene& scene, const KeptInTheDark& in_the_dark,
+                          std::shared_ptr<const SceneGeometry> geometry) {
   KeptSides kept;
   kept.front.assign(scene.polygons.size(), 1);
   kept.back.assign(scene.polygons.size(), 1);
   const double extent = extent_of(scene);
   const std::vector<LampShape> lamps = lamp_shapes(scene, extent);
   const bool daylight = scene.sun || scene.sky;
-  kept.geometry = std::make_shared<const SceneGeometry>(compute_geometry(scene));
+  kept.geometry = std::move(geometry);
   const Shells& shells = kept.geometry->shells;
   LitSolids lit = lit_solids(scene, *kept.geometry, lamps, extent);
   for (const Solid& solid : lit.dark) kept.dark_solids.push_back({name_of_solid(scene, solid), solid.polygons.size()});
@@ -414,9 +415,12 @@ std::vector<Solid> dark_solids(const Scene& scene) {
   return lit_solids(scene, compute_geometry(scene), lamps, extent).dark;
 }
 
-KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark) {
-  if (sides == Sides::automatic) return automatic_sides(scene, in_the_dark);
+KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark,
+                     std::shared_ptr<const SceneGeometry> geometry) {
+  if (!geometry) geometry = std::make_shared<const SceneGeometry>(compute_geometry(scene));
+  if (sides == Sides::automatic) return automatic_sides(scene, in_the_dark, std::move(geometry));
   KeptSides kept;
+  kept.geometry = std::move(geometry);
   kept.front.assign(scene.polygons.size(), 1);
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     const bool has_back = scene.polygons[p].back_material.has_value() || is_sheet(scene, p);

@@ -1,7 +1,7 @@
 #include "scene/spectral_bands.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "light/photometry.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "base/rounded.h"
+#include "base/words.h"
 #include "study/study.h"
 
 #include <algorithm>

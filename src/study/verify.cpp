@@ -4,7 +4,6 @@
 #include "patchlight/views/views.h"
 
 #include "accuracy/spaces.h"
-#include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "base/vectors.h"

@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <utility>
 
 namespace patchlight {
 namespace {

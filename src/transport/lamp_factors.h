@@ -5,14 +5,12 @@
 #include "patchlight/scene/scene.h"
 
 #include "form_factor/pair_samples.h"
-#include "form_factor/patch_shape.h"
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace patchlight {
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
-#include <vector>
 
 namespace patchlight {
 namespace {
@@ -22,11 +21,8 @@ double unoccluded(const PatchMesh& mesh, const Eigen::VectorXd& area, PatchIndex
 }
 
 struct Drawer {
-  const PatchMesh& mesh;
-  const Eigen::VectorXd& area;
-  const EntryErrors& errors;
-  const SamplingError& sampling;
-  std::uint32_t seed;
+  const ErrorsOfEntries& of;
+  std::uint32_t seed = 0;  // of the signs
 
   double standard_error(PatchIndex i, PatchIndex j) const;
   double of_unanimous(const SamplingError::Unanimous& unanimous, PatchIndex i, PatchIndex j) const;
@@ -35,22 +31,22 @@ struct Drawer {
 };
 
 double Drawer::standard_error(PatchIndex i, PatchIndex j) const {
-  switch (errors.kind(i, j)) {
+  switch (of.errors.kind(i, j)) {
     case EntryKind::exact:
       return 0;
     case EntryKind::all_visible:
-      return of_unanimous(sampling.visible, i, j);
+      return of_unanimous(of.sampling.visible, i, j);
     case EntryKind::all_hidden:
-      return of_unanimous(sampling.occluded, i, j);
+      return of_unanimous(of.sampling.occluded, i, j);
     case EntryKind::estimated:
-      return errors.standard_error(i, j);
+      return of.errors.standard_error(i, j);
   }
   return 0;
 }
 
 double Drawer::of_unanimous(const SamplingError::Unanimous& unanimous, PatchIndex i, PatchIndex j) const {
-  const double U = unoccluded(mesh, area, i, j);
-  return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(area[i], area[j])));
+  const double U = unoccluded(of.mesh, of.area, i, j);
+  return U * patchlight::standard_error(unanimous, sampling_effort(U / std::min(of.area[i], of.area[j])));
 }
 
 // Adds the part of the entries of row j and the columns before it.
@@ -81,15 +77,11 @@ void Drawer::add_variances(PatchIndex j, const FieldView& x, Field& sum) const {
   }
 }
 
-Drawer drawer_of(const ErrorsOfEntries& of, std::uint64_t seed) {
-  return {of.mesh, of.area, of.errors, of.sampling, hash({seed, stream::signs_of_rows})};
-}
-
 }  // namespace
 
 Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, std::uint64_t seed) {
   assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()) && draws >= 1 && draws <= 32);
-  const Drawer drawer = drawer_of(of, seed);
+  const Drawer drawer{of, hash({seed, stream::signs_of_rows})};
   const Field zero = Field::Zero(x.rows(), x.cols() * draws);
   return sum_over_stripes(of.errors.size(), stripes, zero,
                           [&](PatchIndex j, Field& sum) { drawer.add_row(j, x, sum); });
@@ -97,7 +89,7 @@ Field random_errors(const ErrorsOfEntries& of, const FieldView& x, int draws, st
 
 Field by_variances(const ErrorsOfEntries& of, const FieldView& x) {
   assert(x.rows() == static_cast<Eigen::Index>(of.errors.size()));
-  const Drawer drawer = drawer_of(of, 0);
+  const Drawer drawer{of};
   const Field zero = Field::Zero(x.rows(), x.cols());
   return sum_over_stripes(of.errors.size(), stripes, zero,
                           [&](PatchIndex j, Field& sum) { drawer.add_variances(j, x, sum); });

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <boost/container/small_vector.hpp>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

@@ -1,6 +1,5 @@
 #include "validate/validate.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -41,7 +41,6 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>

@@ -2,7 +2,7 @@
 
 #include "patchlight/simulate.h"
 
-#include "mesh/interpolate.h"
+#include "support/sloped_field.h"
 
 #include <algorithm>
 #include <cmath>

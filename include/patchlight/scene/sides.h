@@ -38,7 +38,8 @@ struct KeptSides {
   std::vector<DarkSolid> dark_solids = {};
   std::size_t unreached = 0;    ///< sides that face the inside of one
   std::size_t turned_away = 0;  ///< sides that face the dark outside of a closed solid, or nothing at all
-  std::shared_ptr<const SceneGeometry> geometry = {};  ///< shells and solids of the scene; null: not computed
+  std::shared_ptr<const SceneGeometry> geometry =
+      {};  ///< shells and solids of the scene; null in sides that kept_sides() has not made
 };
 
 /// Sides that no light reaches and that are kept nevertheless.
@@ -64,7 +65,10 @@ struct KeptInTheDark {
 /// `in_the_dark` keeps such sides nevertheless; they are still counted, those of the last kind as turned away. The
 /// search for contents of dark solids has a limit of work; sides beyond it are kept. The inner sides of a closed room
 /// are used even if its normals point outward; a note reports this.
-KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark = {});
+///
+/// `geometry` is that of the scene, as other sides of it have it; it is computed when null.
+KeptSides kept_sides(const Scene& scene, Sides sides, const KeptInTheDark& in_the_dark = {},
+                     std::shared_ptr<const SceneGeometry> geometry = {});
 
 /// Area of the kept sides in m^2; a polygon of which both are kept counts twice.
 double kept_area(const Scene& scene, const KeptSides& sides);

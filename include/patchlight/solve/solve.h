@@ -5,7 +5,6 @@
 #include "patchlight/transport/transport_operator.h"
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace patchlight {

@@ -2,7 +2,7 @@
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/material.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "files/sha256.h"
 #include "input/building/cut_openings.h"
 #include "input/left_out.h"

@@ -1,7 +1,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/light/material.h"
 
-#include "base/near_match.h"
+#include "base/words.h"
 #include "files/reason.h"
 #include "files/sha256.h"
 #include "input/building/cut_openings.h"

@@ -2,7 +2,7 @@
 #include "patchlight/light/material.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "files/reason.h"
 #include "files/sha256.h"
 #include "input/left_out.h"

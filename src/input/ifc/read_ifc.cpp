@@ -1,7 +1,7 @@
 #include "patchlight/base/error.h"
 #include "patchlight/scene/scene.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "files/isolated.h"
 #include "files/reason.h"
 #include "files/sha256.h"

@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 
-#include "base/near_match.h"
+#include "base/words.h"
 #include "files/sha256.h"
 #include "input/left_out.h"
 #include "input/materials.h"

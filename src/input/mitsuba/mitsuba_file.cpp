@@ -14,6 +14,21 @@
 namespace patchlight {
 namespace {
 
+// Adds the nodes that have an id, and do not refer to another by it.
+class Identified : public pugi::xml_tree_walker {
+ public:
+  explicit Identified(std::map<std::string, pugi::xml_node>& by_id) : by_id_(by_id) {}
+
+  bool for_each(pugi::xml_node& node) override {
+    if (node.attribute("id") && std::string_view(node.name()) != "ref")
+      by_id_.emplace(node.attribute("id").value(), node);
+    return true;
+  }
+
+ private:
+  std::map<std::string, pugi::xml_node>& by_id_;
+};
+
 // "toWorld" and "to_world" as "toworld".
 std::string plain_name(const char* name) {
   std::string result;
@@ -188,15 +203,7 @@ void MitsubaFile::add(const std::filesystem::path& file, const std::filesystem::
   const pugi::xml_node root = xml.document.child("scene");
   if (!root) throw InputError(where, "has no <scene>; expected a Mitsuba scene, <scene version=\"3.0.0\">");
 
-  struct Ids : pugi::xml_tree_walker {
-    std::map<std::string, pugi::xml_node>* by_id = nullptr;
-    bool for_each(pugi::xml_node& node) override {
-      if (node.attribute("id") && std::string_view(node.name()) != "ref")
-        by_id->emplace(node.attribute("id").value(), node);
-      return true;
-    }
-  } ids;
-  ids.by_id = &by_id_;
+  Identified ids(by_id_);
   files_.back()->document.traverse(ids);
   for (const pugi::xml_node& node : root.children()) {
     const std::string_view kind = node.name();

@@ -1,8 +1,7 @@
 #include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 
-#include "base/near_match.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "files/sha256.h"
 #include "input/materials.h"
 #include "input/obj/parse_obj.h"
@@ -381,13 +380,6 @@ Diagnostics notes_on(const ObjScan& scan, const ObjPalette& palette) {
   return merged({std::move(notes), notes_on_ignored(palette.materials)});
 }
 
-// "a (room.obj:3), b (room.obj:9) and 12 more".
-std::string first_few(const std::vector<std::string>& texts) {
-  const std::size_t count = std::min<std::size_t>(5, texts.size());
-  const std::string rest = texts.size() > count ? " and " + std::to_string(texts.size() - count) + " more" : "";
-  return listed(std::span(texts).first(count)) + rest;
-}
-
 Diagnostics problems_with_names(const std::string& file, const ObjScan& scan, std::span<const MtlMaterial> defined) {
   std::vector<std::uint8_t> has_face(scan.materials.size(), 0);
   for (const ObjFace& face : scan.faces) {
@@ -404,7 +396,7 @@ Diagnostics problems_with_names(const std::string& file, const ObjScan& scan, st
   Diagnostics problems;
   if (!unknown.empty()) {
     problems.push_back({DiagnosticCode::unknown_material,
-                        "usemtl names " + first_few(unknown) +
+                        "usemtl names " + first_few(unknown, 5) +
                             ", which no material file defines; such materials are gray, reflectance 0.5",
                         unknown.size()});
   }

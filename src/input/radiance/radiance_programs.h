@@ -4,7 +4,6 @@
 
 #include "input/radiance/radiance_text.h"
 
-#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>

@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "input/tables/read_tables.h"
 #include "input/text.h"
 

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/geometry.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "input/materials.h"
 #include "input/toml/toml_sensors.h"
 #include "input/toml/toml_value.h"
@@ -172,17 +172,14 @@ NewLight lamps_in_rooms(const Scene& scene) {
 // "# No lamp in: "store", "attic" and 3 more."; empty without rooms.
 std::string names_line(const std::string& what, const std::vector<std::string>& rooms) {
   if (rooms.empty()) return {};
-  std::string list;
-  for (std::size_t k = 0; k < std::min(rooms.size(), most_named); ++k)
-    list += (list.empty() ? "" : ", ") + toml_text(rooms[k]);
-  if (rooms.size() > most_named) list += " and " + std::to_string(rooms.size() - most_named) + " more";
-  return "# " + what + ": " + list + ".\n";
+  std::vector<std::string> names;
+  for (const std::string& room : rooms) names.push_back(toml_text(room));
+  return "# " + what + ": " + first_few(names, most_named) + ".\n";
 }
 
 // Commented out if no place for a lamp was found.
 std::string luminaire_table(const NewLight& light) {
-  std::string positions;
-  for (const Point& lamp : light.lamps) positions += (positions.empty() ? "" : ", ") + toml_text(lamp);
+  const std::string positions = listed_as(light.lamps, [](const Point& lamp) { return toml_text(lamp); });
   const bool is_known = !positions.empty();
   const std::string mark = is_known ? "" : "# ";
   return std::string("# The model has neither lamp nor window, so this lamp lights it, evenly in all directions") +

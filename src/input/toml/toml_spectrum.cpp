@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "input/material_settings.h"
 #include "input/tables/read_tables.h"
 #include "input/text.h"
@@ -9,7 +9,6 @@
 #include "scene/spectral_bands.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace patchlight {

@@ -2,8 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/near_match.h"
-#include "base/rounded.h"
+#include "base/words.h"
 #include "input/text.h"
 
 #include <algorithm>

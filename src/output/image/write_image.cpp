@@ -3,8 +3,8 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
 #include "base/tolerances.h"
+#include "base/words.h"
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
 #include "render/tone_map.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/base/error.h"
 
-#include "base/rounded.h"
+#include "base/words.h"
 #include "output/plot/plot_ticks.h"
 #include "output/plot/write_plot.h"
 #include "render/tone_map.h"

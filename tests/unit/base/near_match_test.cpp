@@ -1,4 +1,4 @@
-#include "base/near_match.h"
+#include "base/words.h"
 
 #include <gtest/gtest.h>
 #include <vector>

@@ -2,6 +2,7 @@
 #include "mesh/interpolate.h"
 #include "mesh/mesher.h"
 #include "support/polygon_shapes.h"
+#include "support/sloped_field.h"
 
 #include <gtest/gtest.h>
 #include <random>
@@ -107,7 +108,7 @@ TEST_P(AverageInEveryShape, SlopesLeadNowhereBeyondWhatIsAround) {
   const double middle = (scene.vertices[0].x() + scene.vertices[2].x()) / 2;
   Field step(other.size(), 1);
   for (PatchIndex k = 0; k < other.size(); ++k) step(k, 0) = other.centroid[k].x() < middle ? 0 : 1;
-  const Field means = average_over(mesh, other, with_slopes(other, step));
+  const Field means = test::average_over(mesh, other, test::with_slopes(other, step));
   EXPECT_GE(means.minCoeff(), -tolerance(GetParam()));
   EXPECT_LE(means.maxCoeff(), 1 + tolerance(GetParam()));
 }
