@@ -6,7 +6,8 @@ usage: scripts/kill_moments.py TOOL [--signal KILL|TERM|INT|HUP] [--moments N] [
 After each KILL every file must be the older one or the whole new one; so must the series, whose .pvd names files that are
 there. All must be of one run, or the kill fell between the first and the last of the renames, which is counted: then the
 new ones are those that are renamed first. The other signals stop a run at the next step: it returns 128 plus the number of
-the signal, or 0 if it has ended before; all files are whole, and views that were not ready are the older ones. After one more run no temporary file is left.
+the signal, or 0 if it has ended before; all files are whole, and views that were not ready are the older ones. A new
+solution of a stopped run can be rendered. After one more run no temporary file is left.
 """
 import argparse
 import json
@@ -80,6 +81,16 @@ def renamed(folder, before, whole, is_soft):
     return found
 
 
+def require_usable(tool, folder, lamp):
+    """The solution of a stopped run can be rendered."""
+    with tempfile.TemporaryDirectory(prefix="patchlight-kill-") as place:
+        render = [tool, "render", "room.obj", "-q", "--set", f"lamp.exitance={LAMPS[lamp]}", "--solution", "out.vtp", "--size",
+                  "8x8", "-o", os.path.join(place, "x.png")]
+        done = subprocess.run(render, cwd=folder, check=False, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise AssertionError(f"out.vtp cannot be rendered: exit code {done.returncode}, {done.stderr.strip()}")
+
+
 def wait_for_writing(process, folder):
     """Until the outputs are being written, or the run has ended."""
     while process.poll() is None and not any(folder.glob(".patchlight-*.partial")):
@@ -114,7 +125,7 @@ def main():
             end = time.monotonic()
             duration, writing = end - begin, end - written_from
             whole[lamp] = {name: fact(folder, name) for name in FILES}
-        now, killed, ended = 1, 0, 0
+        now, killed, ended, usable = 1, 0, 0, 0
         start = time.monotonic()
         while killed < options.moments and time.monotonic() - start < options.seconds:
             wanted = 3 - now
@@ -137,6 +148,9 @@ def main():
             killed += 1
             try:
                 found = renamed(folder, before, whole[wanted], sent != signal.SIGKILL)
+                if sent != signal.SIGKILL and found[0]:
+                    require_usable(options.tool, folder, wanted)
+                    usable += 1
             except AssertionError as error:
                 faults.append(f"moment {killed}: {error}")
                 break
@@ -152,7 +166,8 @@ def main():
             faults.append(f"left behind: {left}, {named} files of the series named")
     print(f"kill_moments: {killed} kills, half of them within {duration:.2f} s of a run and half within the {writing:.2f} s in "
           f"which it writes: {counts['old']} times all files old, {counts['new']} times all new, {counts['between']} times "
-          f"between two renames; {ended} runs ended before; {len(faults)} faults")
+          f"between two renames; {usable} new solutions of stopped runs rendered; {ended} runs ended before; "
+          f"{len(faults)} faults")
     for fault in faults:
         print(fault)
     return 1 if faults else 0
