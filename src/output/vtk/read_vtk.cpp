@@ -9,6 +9,7 @@
 #include <fstream>
 #include <limits>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -74,6 +75,15 @@ double number_of(vtkPolyData& polygons, const char* name, const std::filesystem:
   return numbers.front();
 }
 
+std::uint64_t seed_of(vtkPolyData& polygons, const std::filesystem::path& file) {
+  const std::string text = texts_of(polygons, "seed", file).front();
+  const char* const end = text.data() + text.size();
+  std::uint64_t seed = 0;
+  const auto [past, error] = std::from_chars(text.data(), end, seed);
+  if (error != std::errc() || past != end) refuse_file(file, "the fact 'seed' is no whole number");
+  return seed;
+}
+
 void add_patches(StoredSolution& to, vtkPolyData& polygons, const std::filesystem::path& file) {
   for (vtkIdType k = 0; k < polygons.GetNumberOfPoints(); ++k) {
     Point point;
@@ -102,8 +112,7 @@ void add_run(StoredSolution& to, vtkPolyData& polygons, const std::filesystem::p
   to.scene_hash = texts_of(polygons, "scene_hash", file).front();
   to.follows_reflections = number_of(polygons, "follows_reflections", file) != 0;
   to.converged = number_of(polygons, "converged", file) != 0;
-  const std::string seed = texts_of(polygons, "seed", file).front();
-  std::from_chars(seed.data(), seed.data() + seed.size(), to.seed);
+  to.seed = seed_of(polygons, file);
   const std::vector<std::string> effects = texts_of(polygons, "effects", file);
   const std::vector<double> simulated = numbers_of(polygons, "effects_simulated", file);
   const std::vector<double> forced = numbers_of(polygons, "effects_forced", file);

@@ -110,6 +110,16 @@ TEST_F(ReadSolution, RefusesNumbersOfPolygonsThatAreNotThere) {
   EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError) << "polygon 1 has no patch";
 }
 
+TEST_F(ReadSolution, RefusesSeedsThatAreNoWholeNumbers) {
+  for (const char* seed : {"x", "-1", "1.5", "7 ", "99999999999999999999"}) {
+    write();
+    edit([=](vtkPolyData& of) {
+      vtkStringArray::SafeDownCast(of.GetFieldData()->GetAbstractArray("seed"))->SetValue(0, seed);
+    });
+    EXPECT_THROW(read_solution(file, std::make_shared<const Scene>(scene)), InputError) << seed;
+  }
+}
+
 TEST_F(ReadSolution, RefusesFactsWithoutValues) {
   for (const char* fact : {"scene_hash", "seed", "effects"}) {
     write();
