@@ -90,6 +90,12 @@ std::string open_npy(const std::filesystem::path& file, std::ifstream& stream) {
   return read_header(stream).value_or("");
 }
 
+// The first line of a header, which may have 65,536 characters.
+std::string start_of(const std::string& header) {
+  constexpr std::size_t most = 120;
+  return header.substr(0, std::min(most, header.find('\n')));
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found) {
   throw InputError(file.string(), "found " + found +
                                       "; expected an array of numpy (.npy) of type '<f4' or '<f8', in C order, of one "
@@ -202,7 +208,7 @@ NpyReader::NpyReader(const std::filesystem::path& file) : file_(file) {
   const std::vector<std::size_t> shape = shape_of(value_of(text, "'shape':"));
   if (!(type.starts_with("'<f4'") || type.starts_with("'<f8'")) ||
       !value_of(text, "'fortran_order':").starts_with("False") || shape.empty() || shape.size() > 2) {
-    refuse(file, "the header " + text.substr(0, text.find('\n')));
+    refuse(file, "the header " + start_of(text));
   }
   bytes_per_value_ = type[3] == '4' ? 4 : 8;
   rows_ = shape[0];
@@ -214,7 +220,7 @@ NpyReader::NpyReader(const std::filesystem::path& file) : file_(file) {
   const bool empty = rows_ == 0 || columns_ == 0;
   const bool fits =
       empty ? bytes == 0 : bytes % bytes_per_value_ == 0 && values % rows_ == 0 && values / rows_ == columns_;
-  if (!fits) refuse(file, std::to_string(bytes) + " bytes after the header " + text.substr(0, text.find('\n')));
+  if (!fits) refuse(file, std::to_string(bytes) + " bytes after the header " + start_of(text));
 }
 
 std::vector<double> NpyReader::next_rows(std::size_t count) {

@@ -121,5 +121,19 @@ TEST(Npy, AShapeThatTheFileCannotHoldIsRefused) {
   EXPECT_THROW(read_npy(file, 4, 1), InputError);
 }
 
+TEST(Npy, MessagesQuoteTheStartOfALongHeader) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "a.npy";
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (4,), }";
+  header.resize(0x8000, 'x');
+  std::ofstream(file, std::ios::binary) << "\x93NUMPY" << '\1' << '\0' << '\0' << '\x80' << header;
+  try {
+    const NpyReader reader(file);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_LT(std::string(error.what()).size(), file.string().size() + 400);
+  }
+}
+
 }  // namespace
 }  // namespace patchlight::npy_test
