@@ -91,8 +91,8 @@ int main(int count, char** values) {
   } catch (const std::exception& error) {
     if (is_process_limit(error)) {
       return failed(out_of_memory,
-                    "no further thread or process can start: the limit of processes is reached\n"
-                    "hint: use --threads 1, or raise the limit (ulimit -u)");
+                    "no further thread or process can start: the limit of processes or of memory is reached\n"
+                    "hint: use --threads 1, or raise the limit (ulimit -u, ulimit -v)");
     }
     return failed(internal_error, (std::string("internal error: ") + error.what()).c_str());
   }
