@@ -51,8 +51,9 @@ std::string reason_of(const std::exception& error) {
 
 std::string reason_of(const std::string& library_text) {
   std::string text = library_text;
+  while (text.ends_with('\n')) text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  if (text.starts_with("[json.exception")) return reason_of_json(text);
+  if (contains(text, "[json.exception")) return reason_of_json(text);
   if (contains(text, "bad_alloc") || contains(text, "length_error")) return too_large;
   if (contains(text, "::_M_") || contains(text, "__n (which") || contains(text, "out_of_range"))
     return "a number in it refers to nothing";

@@ -2,6 +2,7 @@
 
 #include "patchlight/base/error.h"
 
+#include "files/reason.h"
 #include "files/sha256.h"
 #include "input/picture_colours.h"
 #include "input/text.h"
@@ -341,13 +342,6 @@ bool file_exists(const std::string& name, void* parts) {
   }
 }
 
-// Joins the lines of a tinygltf message.
-std::string one_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 std::size_t bytes_per_value(int component_type) {
   const int size = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(component_type));
   return size > 0 ? static_cast<std::size_t>(size) : 0;
@@ -447,7 +441,7 @@ GltfModel read_gltf_model(const std::filesystem::path& file, const std::filesyst
   result = with_pictures(std::move(result), std::move(pictures));
   require_known_extensions(result.model, file.string());
   if (!good) {
-    throw InputError(file.string(), "is not a good glTF 2.0 file: " + one_line(error) + "\nhint: export it again");
+    throw InputError(file.string(), "is not a good glTF 2.0 file: " + reason_of(error) + "\nhint: export it again");
   }
   result.model = decompressed(std::move(result.model), file.string());
   return result;

@@ -57,6 +57,9 @@ TEST(ReasonOf, NamesTheKeyAndTheLineInTheFile) {
 TEST(ReasonOf, TextsOfLibrariesAreReplacedToo) {
   EXPECT_EQ(reason_of(std::string("std::bad_alloc")), reason([] { throw std::bad_alloc(); }));
   EXPECT_EQ(reason_of(std::string("a file of version 3")), "a file of version 3");
+  EXPECT_EQ(reason_of(std::string("no mesh\nno node\n")), "no mesh no node");
+  const std::string of_json = "Failed: [json.exception.parse_error.101] parse error at line 2, column 7: ill-formed\n";
+  EXPECT_EQ(reason_of(of_json), "it is not JSON at line 2, column 7");
 }
 
 }  // namespace

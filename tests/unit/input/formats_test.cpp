@@ -311,6 +311,7 @@ TEST_F(Formats, DamagedFilesAreRefusedByName) {
       const auto file = write(name, damaged);
       const std::string message = refusal(file);
       EXPECT_EQ(message.rfind(file.string() + ":", 0), 0U) << message;
+      EXPECT_EQ(message.find("exception"), std::string::npos) << message;
       const std::size_t end = message.find('\n');
       EXPECT_TRUE(end == std::string::npos || message.substr(end).starts_with("\nhint: ")) << message;
       EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), end == std::string::npos ? 0 : 1) << message;
