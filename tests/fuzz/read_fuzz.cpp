@@ -1,7 +1,10 @@
 // Any bytes read as a model of the format PATCHLIGHT_FUZZ_FORMAT give a scene that passes its own check, or an
-// InputError of one line that names the file. For mtl, the bytes are the material file of an OBJ file with one face.
+// InputError of one line and a hint that names the file. For mtl, the bytes are the material file of an OBJ file with
+// one face.
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
+
+#include "message.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -50,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   } catch (const InputError& error) {
     const std::string message = error.what();
     const bool is_named = message.find(fuzzed) == 0 || message.find(model) == 0;
-    if (!is_named || message.find('\n') != std::string::npos) std::abort();
+    if (!is_named || !is_good_message(message)) std::abort();
   }
   return 0;
 }
