@@ -1,6 +1,7 @@
 // Any bytes read as a file of the format PATCHLIGHT_FUZZ_FORMAT are accepted, or refused with an InputError of one
 // line and a hint. The formats are scene files, photometric files, weather files, spectra, points, NumPy arrays,
-// solutions, and the two JSON files of stored form factors. VTK may crash in its process, but sanitizers may not end it.
+// solutions, and the two JSON files of stored form factors. VTK may crash in its process, but sanitizers may not end
+// it.
 #include "patchlight/base/error.h"
 
 #include "archive/form_factor_files.h"
@@ -79,7 +80,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     read(text);
   } catch (const InputError& error) {
     const std::string message = error.what();
-    const bool is_of_sanitizer = format == "vtp" && message.find("the reader of this format gave up") != std::string::npos;
+    const bool is_of_sanitizer =
+        format == "vtp" && message.find("the reader of this format gave up") != std::string::npos;
     if (!is_good_message(message) || is_of_sanitizer) std::abort();
   }
   return 0;
