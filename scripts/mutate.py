@@ -6,10 +6,10 @@ usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [-
 
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, words by
 others of the file, brackets piled up) and given to check, plan, solve, relight or render. A run is bad if a signal ends
-the tool; it or its reader takes over 20 s of the processor or never ends; its exit code is not documented, or 70, which
+the tool; it takes over 20 s of the processor or never ends; its exit code is not documented, or 70, which
 stands for a defect; it fails without a message; a library writes to the terminal; it succeeds and prints a nan. The tool
-may be any build, also one with sanitizers. --commands check,plan tries the readers alone, in a fraction of the time. Run number k of a seed is always the same, so that many can be made in
-pieces, each from --first on. A line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default:
+may be any build, also one with sanitizers. --commands check,plan tries the readers alone, in a fraction of the time. Run
+number k of a seed is always the same, so that many can be made in pieces, each from --first on. A line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default:
 mutate_found).
 """
 import argparse
@@ -126,7 +126,6 @@ HOSTILE = [b"0", b"-1", b"1", b"1.0000001", b"1e-300", b"1e15", b"1e19", b"1e39"
 MESSAGE = re.compile(rb"^patchlight: \w+: .{12}", re.MULTILINE)
 # The tool begins each line itself; sanitizers and libraries do not.
 FOREIGN = re.compile(rb"^(?!patchlight: |hint: |[ ]|$).*|.*json\.exception.*", re.MULTILINE)
-OVERDUE = b"took too much time"  # of a reader in a process of its own
 NAN = re.compile(rb"(?<![\w.])-?nan(?![\w.])")
 QUOTED = re.compile(rb"'[^'\n]*'")  # a message may quote the file
 NUMBER = re.compile(rb"[-+]?[0-9]+\.?[0-9]*(?:[eE][-+]?[0-9]+)?")
@@ -227,8 +226,6 @@ def fault_of(code, said, printed):
         return f"over {PATIENCE} s"
     if code not in DOCUMENTED:
         return f"exit code {code}"
-    if OVERDUE in said:
-        return f"its reader takes over {PATIENCE} s"
     if FOREIGN.search(said):
         return f"text of a library: {FOREIGN.search(said)[0][:80]!r}"
     if code == 0:

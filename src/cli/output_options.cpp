@@ -167,9 +167,10 @@ void require_consistent(const std::string& command, const SolutionOptions& optio
 void require_outside(const path& folder, const std::string& name, const std::vector<OutputFile>& outputs) {
   std::error_code error;
   const path place = weakly_canonical(absolute(folder) / ".", error);
+  const std::string remedy = "' lies in " + name + "; expected a file elsewhere";
   for (const auto& [option, file] : outputs) {
     if (error || file.empty() || weakly_canonical(absolute(file), error).parent_path() / "." != place / ".") continue;
-    throw UsageError(option + ": '" + file.string() + "' lies in " + name + "; expected a file elsewhere");
+    throw UsageError(std::string(option).append(": '").append(file.string()).append(remedy));
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "patchlight/base/field.h"
+#include "patchlight/light/spectrum.h"
 
 #include <cstddef>
 #include <vector>

@@ -248,7 +248,7 @@ std::vector<Point> part_above(const std::array<Point, 3>& triangle, const FlatPo
   const auto height = [&](const Point& point) { return frame.height(point); };
   if (std::none_of(triangle.begin(), triangle.end(), [&](const Point& point) { return height(point) > least; }))
     return {};
-  const auto above = part_before({triangle.begin(), triangle.end()}, height);
+  auto above = part_before({triangle.begin(), triangle.end()}, height);
   if (light.weight == 0) return above;
   // Higher parts throw no shadow but at grazing angles.
   const double highest = (1 - tolerance_of_shapes) * height(light.at);

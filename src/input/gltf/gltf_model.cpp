@@ -308,6 +308,7 @@ GltfModel with_pictures(GltfModel model, Pictures pictures) {
 }
 
 // Keeps a reduced picture, shared by images with the same bytes. A picture that cannot be decoded is not an error.
+// NOLINTNEXTLINE(readability-function-size): the library fixes the parameters
 bool take_image(tinygltf::Image*, int index, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                 void* into) {
   const std::string text(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
