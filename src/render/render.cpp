@@ -73,7 +73,8 @@ SeenLuminaire seen_sphere(const Luminaire& luminaire, const SphericalLamp& lamp)
           [radiance = Spectrum(lamp.exitance / std::numbers::pi)](const Vector&) { return radiance; }};
 }
 
-SeenLuminaire seen_opening(const Luminaire& luminaire, std::shared_ptr<const PhotometricWeb> web, const Vector& up) {
+SeenLuminaire seen_opening(const Luminaire& luminaire, const std::shared_ptr<const PhotometricWeb>& web,
+                           const Vector& up) {
   constexpr double least = 1e-9;  // m, of a flat opening: its rim is as good as never met
   const LuminaireFrame frame{luminaire.aim, luminaire.zero_plane};
   Eigen::Matrix3d axes;

@@ -41,7 +41,7 @@ PartsSeen ways_to_parts(const Luminaire& luminaire, const PhotometricWeb& web, c
     for (int column = 0; column < parts; ++column) {
       const double across = ((row + 0.5) / parts - 0.5) * web.opening[0];
       const double along = ((column + 0.5) / parts - 0.5) * web.opening[1];
-      ways[static_cast<std::size_t>(row * parts + column)] = {
+      ways[static_cast<std::size_t>(row) * parts + static_cast<std::size_t>(column)] = {
           eye, luminaire.position + across * side + along * luminaire.zero_plane};
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/render/image.h"
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 
