@@ -321,9 +321,9 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
 }
 
 // E = sum_j F(x, j) (B_j V_j + g_j . m_j) / p_j, V_j the visible share, m_j its first moment and p_j the probability of
-// rays to j; and its variance (Horvitz and Thompson 1952). Rays to a patch that agree may miss what the others of it
-// would meet: of all such rays the heaviest counts as an error. A patch that stands for others counts as a whole, as
-// those may be visible.
+// rays to j; and its variance (Horvitz and Thompson 1952). If all rays to a patch agree, they may still miss a gap or
+// an obstacle: the heaviest of all such rays counts as an error. A patch that was chosen at random counts as a whole,
+// because those that were not chosen may be visible.
 std::vector<SeenPatch> add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources,
                                           const Spectrum& limit, double times, std::uint32_t stage, Reading& reading,
                                           ErrorsOfPatches& errors) {
@@ -351,7 +351,9 @@ std::vector<SeenPatch> add_bright_patches(const Gather& gather, const Sensor& se
     const PatchMesh& mesh = gather.light.mesh;
     const Spectrum weight = factor * share.mean();
     const double squared_distance = (mesh.centroid[source->patch] - sensor.point).squaredNorm();
-    seen.push_back({source->patch, weight, probability * weight.square(), weight * (1 - share.visible),
+    // E[v (1 - v)] of a sampled share v is too small by its variance.
+    const double hidden = share.mean() * (1 - share.visible) + share.covariance(0, 0) * share.visible / share.mean();
+    seen.push_back({source->patch, weight, probability * weight.square(), factor * hidden,
                     squared_unevenness(mesh, source->patch, squared_distance)});
     errors.add(seen.back());
   }
@@ -376,7 +378,9 @@ void add_errors(const Gather& gather, const Sensor& sensor, std::span<const Hemi
   double unevenness = 0, sum = 0;
   for (const HemisphereHit& hit : hits) {
     weights.row(hit.replicate) += hit.weight;
-    unevenness += hit.form_factor * squared_unevenness(mesh, j, hit.distance * hit.distance);
+    const double squared_distance =
+        hit.is_mirrored ? hit.distance * hit.distance : (mesh.centroid[j] - sensor.point).squaredNorm();
+    unevenness += hit.form_factor * squared_unevenness(mesh, j, squared_distance);
     sum += hit.form_factor;
     if (hit.is_mirrored) continue;
     straight.row(hit.replicate) += hit.weight;

@@ -140,7 +140,9 @@ SpecularAim::SpecularAim(const Scene& scene, const SurfaceOptics& optics) {
     if (optics.at(p)) targets_.push_back(opening_at(scene, p));
   std::stable_sort(targets_.begin(), targets_.end(),
                    [](const Opening& a, const Opening& b) { return a.area > b.area; });
-  targets_.resize(std::min<std::size_t>(targets_.size(), 256));  // rays over the hemisphere find smaller ones
+  constexpr std::size_t max_targets = 256;  // cosine-distributed rays find smaller ones
+  has_all_faces_ = targets_.size() <= max_targets;
+  if (!has_all_faces_) targets_.resize(max_targets);
 }
 
 // The probability of each target to be chosen; none where no target is before the receiver.
@@ -156,11 +158,10 @@ std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) cons
   constexpr std::size_t max_targets = 32;  // each costs time for every ray
   if (probabilities.size() > max_targets) {
     std::vector<double> sorted = probabilities;
-    std::nth_element(sorted.begin(), sorted.begin() + max_targets, sorted.end(), std::greater<>());
+    std::nth_element(sorted.begin(), sorted.begin() + max_targets - 1, sorted.end(), std::greater<>());
     for (double& probability : probabilities)
-      if (probability <= sorted[max_targets]) probability = 0;
+      if (probability < sorted[max_targets - 1]) probability = 0;
     sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
-    if (!(sum > 0)) return {};
   }
   for (double& probability : probabilities) probability /= sum;
   return probabilities;

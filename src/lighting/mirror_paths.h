@@ -61,8 +61,11 @@ class SpecularAim {
  public:
   SpecularAim(const Scene& scene, const SurfaceOptics& optics);
 
-  /// The probability of each target at a place, by its apparent size; the 32 largest only. Empty if no target is above
-  /// the place's horizon.
+  /// False if there are too many clear faces and mirrors for all to be targets.
+  bool has_all_faces() const { return has_all_faces_; }
+
+  /// The probability of each target at a place, by its apparent size; 0 for all but the 32 largest and those of equal
+  /// size. Empty if no target is above the place's horizon.
   std::vector<double> probabilities_from(const SurfacePoint& at) const;
 
   /// Half of the samples, two numbers each, become directions distributed as the cosine over the hemisphere. The others
@@ -74,6 +77,7 @@ class SpecularAim {
  private:
   double aimed_density(std::span<const double> probabilities, const SurfacePoint& at, const Vector& direction) const;
 
+  bool has_all_faces_ = true;
   std::vector<Opening> targets_;  // the clear faces and mirrors, the largest first
 };
 

@@ -160,7 +160,7 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
       samples.push_back({sample[2], sample[3]});
     }
     const std::vector<double> probabilities = aim.probabilities_from(places[k].at);
-    if (probabilities.empty()) continue;  // no reflection can be seen
+    if (probabilities.empty() && aim.has_all_faces()) continue;  // no reflection can be seen
     for (const auto& [ray, weight] : aim.rays(places[k].at, probabilities, samples)) {
       rays.push_back(ray);
       weights.push_back(weight);

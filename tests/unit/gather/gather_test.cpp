@@ -7,12 +7,15 @@
 #include "gather/doubtful_sensors.h"
 #include "gather/sensor_places.h"
 #include "lighting/light_paths.h"
+#include "lighting/mirror_paths.h"
 #include "mesh/mesher.h"
 #include "scene/sensor_grid.h"
 #include "support/scenes.h"
 #include "visibility/occluder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <string>
@@ -149,9 +152,23 @@ DividedRoom divided_room() {
   return room;
 }
 
+// The mean of values, and how many of its standard errors it is off.
+double standard_errors_off(const std::vector<double>& values, double expected) {
+  double sum = 0, squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += value * value;
+  }
+  const auto count = static_cast<double>(values.size());
+  const double mean = sum / count;
+  return (mean - expected) / std::sqrt((squares / count - mean * mean) / (count - 1));
+}
+
 // Light and errors by rays over the hemisphere agree with those by shadow rays to every patch. The variances of 165
-// sensors with seven degrees of freedom each give the root mean square of their differences to about 7 %. The errors
-// of patches at one sensor are known to some 20 %, and without bias, so that all 165 differ by 2 % at most.
+// sensors with seven degrees of freedom each give the root mean square of their differences to about 7 %. The errors of
+// the solver and of sampling have no bias: their ratios over eight seeds have a mean of 1. Student's t with seven
+// degrees of freedom exceeds 6 once in 2,000 draws. The hidden ends of patches are squared, so that their noise makes
+// this part slightly larger. An error bar has two digits, so that 1 % more does not count.
 TEST(GatherIrradiance, ByTheHemisphereAgreesWithShadowRaysToEveryPatch) {
   DividedRoom room = divided_room();
   ASSERT_GT(room.options.least_rays * static_cast<int>(room.mesh.size()), room.options.rays);
@@ -159,20 +176,57 @@ TEST(GatherIrradiance, ByTheHemisphereAgreesWithShadowRaysToEveryPatch) {
   const LightPaths paths(room.scene, tracing);
   room.options.paths = &paths;
   const SensorGroup grid = rectangle_grid(Point(0, 0, 0.3), {Vector(4, 0, 0), Vector(0, 3, 0)}, 0.25);
-  const GatheredIrradiance found =
-      gather_irradiance(room.mesh, room.radiosity, tracing.all_faces(), grid.sensors, room.options);
+  const auto gathered = [&](const GatherOptions& options) {
+    return gather_irradiance(room.mesh, room.radiosity, tracing.all_faces(), grid.sensors, options);
+  };
   GatherOptions all = room.options;
   all.rays = 16 * static_cast<int>(room.mesh.size());
-  const GatheredIrradiance exact = gather_irradiance(room.mesh, room.radiosity, tracing.all_faces(), grid.sensors, all);
-  const Field variance = found.errors.rays.square() + exact.errors.rays.square();
-  const Field z = (found.irradiance - exact.irradiance) / variance.sqrt();
-  EXPECT_GT(found.errors.rays.sum(), exact.errors.rays.sum()) << "both took the same rays";
-  EXPECT_LT(std::sqrt(z.square().mean()), 1.3);
-  EXPECT_LT(std::abs(z.mean()), 3 / std::sqrt(static_cast<double>(z.rows())));
+  const GatheredIrradiance exact = gathered(all);
+  std::vector<double> solver, sampling, mesh;
   const auto ratio = [](const Field& a, const Field& b) { return std::sqrt(a.square().sum() / b.square().sum()); };
-  EXPECT_NEAR(ratio(found.errors.solver, exact.errors.solver), 1, 0.01);
-  EXPECT_NEAR(ratio(found.errors.sampling, exact.errors.sampling), 1, 0.02);
-  EXPECT_NEAR(ratio(found.errors.mesh, exact.errors.mesh), 1, 0.02);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    GatherOptions options = room.options;
+    options.seed = seed;
+    const GatheredIrradiance found = gathered(options);
+    const Field variance = found.errors.rays.square() + exact.errors.rays.square();
+    const Field z = (found.irradiance - exact.irradiance) / variance.sqrt();
+    EXPECT_GT(found.errors.rays.sum(), exact.errors.rays.sum()) << "both took the same rays";
+    EXPECT_LT(std::sqrt(z.square().mean()), 1.3);
+    EXPECT_LT(std::abs(z.mean()), 3.5 / std::sqrt(static_cast<double>(z.rows())));
+    solver.push_back(ratio(found.errors.solver, exact.errors.solver));
+    sampling.push_back(ratio(found.errors.sampling, exact.errors.sampling));
+    mesh.push_back(ratio(found.errors.mesh, exact.errors.mesh));
+  }
+  EXPECT_LT(std::abs(standard_errors_off(solver, 1)), 6);
+  EXPECT_LT(std::abs(standard_errors_off(sampling, 1)), 6);
+  for (const double one : mesh) EXPECT_NEAR(one, 1, 0.01);
+}
+
+// A sensor sees one uncertain patch directly and in a mirror without losses. Its image has a form factor as well, and
+// the error of the patch counts with the sum of both.
+TEST(SensorErrors, OfAPatchThatIsSeenInAMirrorAsWellAddUp) {
+  const Quad lamp{Point(0.3, 0.3, 1), Point(0.3, 0.7, 1), Point(0.7, 0.7, 1), Point(0.7, 0.3, 1)};
+  Scene scene = with_quad(empty_scene({grey(0.5), grey(0)}), lamp);
+  scene.materials[1].specular_reflectance = Spectrum::Ones(scene.materials[0].reflectance.size());
+  scene = with_quad(std::move(scene), {Point(-9, 0, -9), Point(-9, 0, 9), Point(9, 0, 9), Point(9, 0, -9)}, 1);
+  const Occluder occluder(scene, Occluder::Blockers::all, {}, Reflections::followed);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 20);
+  Field radiosity = Field::Zero(mesh.size(), occluder.optics().bands());
+  for (PatchIndex i = 0; i < mesh.size(); ++i)
+    if (mesh.polygon[i] == 0) radiosity.row(i).setOnes();
+  const SpecularAim aim(scene, occluder.optics());
+  GatherOptions options{.slopes = false, .aim = &aim};
+  options.errors.sampling = 0.1 * radiosity;
+  const std::vector<Sensor> sensors{{Point(0.5, 0.4, 0), Vector::UnitZ()}};
+  const GatheredIrradiance found = gather_irradiance(mesh, radiosity, occluder, sensors, options);
+  Quad image = lamp;
+  for (Point& corner : image) corner.y() *= -1;
+  std::reverse(image.begin(), image.end());
+  const double expected = point_to_polygon(sensors[0].point, sensors[0].normal, lamp) +
+                          point_to_polygon(sensors[0].point, sensors[0].normal, image);
+  EXPECT_NEAR(found.irradiance(0, 0), expected, 5 * found.errors.rays(0, 0));
+  EXPECT_LT(found.errors.rays(0, 0), 0.02 * expected);
+  EXPECT_NEAR(found.errors.sampling(0, 0), 0.1 * expected, 0.1 * 5 * found.errors.rays(0, 0));
 }
 
 // Each of more than a thousand patches: rays that all meet the same radiosity have no scatter.
