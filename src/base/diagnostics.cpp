@@ -12,11 +12,12 @@ namespace {
 constexpr std::string_view code_names =
     "no_lamp covered_lamp missing_material_file unknown_material self_intersecting left_out implausible_size "
     "guessed_up full_reflectance moved_material_file no_material turned_faces non_planar duplicate_faces "
-    "overlapping_faces doubtful_sensor little_left_out two_sided_faces non_manifold_edges zero_area repeated_corners "
+    "overlapping_faces misplaced_luminaire doubtful_sensor little_left_out two_sided_faces non_manifold_edges "
+    "zero_area repeated_corners "
     "welded_vertices reduced_model maintenance_factor assumed_material simplified_part cut_out_material "
     "unreadable_picture simplified_picture read_as_pane read_as_mirror lowered_reflectance simplified_light "
     "renamed_material north_of_file missing_sensors unlit_sides sealed_solid outward_normals both_sides "
-    "misplaced_luminaire sun_below_horizon idle_option translucent_sheet contact_lines shadow_edges fine_outline "
+    "sun_below_horizon idle_option translucent_sheet contact_lines shadow_edges fine_outline "
     "more_patches rows_of_rays second_mesh unfollowed_reflection close_lamp lost_light checkpoint";
 
 const std::vector<std::string>& names_of_codes() {
@@ -39,7 +40,7 @@ std::optional<DiagnosticCode> diagnostic_code(std::string_view name) {
 
 bool makes_results_wrong(DiagnosticCode code) {
   return code == DiagnosticCode::left_out || code == DiagnosticCode::implausible_size ||
-         code == DiagnosticCode::guessed_up;
+         code == DiagnosticCode::guessed_up || code == DiagnosticCode::misplaced_luminaire;
 }
 
 bool is_note(DiagnosticCode code) { return severity_of(code) == Severity::note; }

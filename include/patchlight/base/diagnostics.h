@@ -30,6 +30,7 @@ enum class DiagnosticCode : std::uint8_t {
   non_planar,           ///< faces whose corners do not lie in one plane
   duplicate_faces,      ///< a face that is there already, with the same front
   overlapping_faces,    ///< faces that lie in part under another in the same plane
+  misplaced_luminaire,  ///< luminaires behind a face, in its plane, or just outside of a room
   doubtful_sensor,      ///< sensors inside walls, in surfaces, far from the model or close to pictures
   // Remarks: harmless.
   little_left_out,     ///< the scene lacks some faces of a file, or things without area
@@ -58,7 +59,6 @@ enum class DiagnosticCode : std::uint8_t {
   sealed_solid,           ///< closed solids around lamps that daylight does not enter
   outward_normals,        ///< closed solids around lamps whose inner sides are backs
   both_sides,             ///< both sides of faces emit, or share a form factor
-  misplaced_luminaire,    ///< luminaires behind a face, in its plane, or just outside of a room
   sun_below_horizon,      ///< the sun gives no light
   idle_option,            ///< an option on an effect of which the scene has nothing
   translucent_sheet,      ///< faces that need a solver for sheets
