@@ -147,7 +147,9 @@ void RadianceModifiers::define(const RadiancePrimitive& primitive, const std::st
     require_numbers(primitive, where);
   }
   // An alias keeps the modifier of its original unless it has its own.
-  modifier.under = place_of(primitive.modifier).value_or(modifier.under);
+  const std::optional<std::size_t> under = place_of(primitive.modifier);
+  modifier.under = under.value_or(modifier.under);
+  modifier.is_under_unknown = modifier.is_under_unknown || (!under && primitive.modifier != "void");
   last_[primitive.name] = all_.size();
   all_.push_back(std::move(modifier));
 }
@@ -163,7 +165,12 @@ std::size_t RadianceModifiers::material_below(std::size_t place) const {
 }
 
 bool RadianceModifiers::has_pattern(std::size_t place) const {
-  return is_pattern(all_[place]) || is_pattern(all_[all_[place].under]);
+  for (;;) {
+    const RadianceModifier& modifier = all_[place];
+    if (is_pattern(modifier) || modifier.is_under_unknown) return true;
+    if (modifier.under == place) return false;
+    place = modifier.under;
+  }
 }
 
 }  // namespace patchlight

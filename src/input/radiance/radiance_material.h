@@ -51,6 +51,7 @@ struct RadianceModifier {
   std::string kind;       ///< "plastic"
   std::string name;
   std::vector<double> numbers;
+  bool is_under_unknown = false;  ///< its own modifier is not defined: a program that is not executed may write it
 };
 
 /// The modifiers of the files, in order.
@@ -67,7 +68,7 @@ class RadianceModifiers {
   /// The index of the material below patterns and textures, or of the last of these.
   std::size_t material_below(std::size_t place) const;
 
-  /// True for a pattern or texture, and for a material below one.
+  /// True for a pattern or texture, and for a material below one or below an undefined modifier.
   bool has_pattern(std::size_t place) const;
 
  private:

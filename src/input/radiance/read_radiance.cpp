@@ -368,6 +368,14 @@ class RadianceReader {
       else
         left_out_.add(sentence, modifier.name);
     }
+    if (modifiers_.has_pattern(place) && (material->material.exitance > 0).any()) {
+      // Its flux is unknown: ies2rad scales the distribution of a luminaire by the numbers of its light.
+      left_out_.lose(
+          "lights with a pattern, as ies2rad writes them, emit nothing: give their IES files as [[luminaire]] of kind "
+          "\"ies\" in a scene file",
+          modifier.name);
+      material->material.exitance.setZero();
+    }
     known->second = static_cast<MaterialIndex>(scene_.materials.size());
     scene_.materials.push_back(std::move(material->material));
     return known->second;

@@ -217,6 +217,24 @@ TEST_F(Radiance, EvenHalfSpheresAreSkyAndGroundAndOthersAreNamed) {
   EXPECT_TRUE(scene_with(varies + square("wall", 0), with_sky).sky);
 }
 
+// The program that writes the pattern is not executed: the sky varies in an unknown way.
+TEST_F(Radiance, ASourceBelowAnUndefinedModifierIsNoEvenSky) {
+  const Scene scene = scene_with("!gensky 6 21 12\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source up 0 0 4 0 0 1 180\n" +
+                                 square("wall", 0));
+  EXPECT_FALSE(scene.sky);
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 2U) << "the program and the source";
+}
+
+// As ies2rad writes it. The numbers of the light are a factor of the distribution, not its radiance.
+TEST_F(Radiance, ALightBelowAPatternEmitsNothing) {
+  const Scene scene = scene_with(
+      "void brightdata office_dist 4 flatcorr office.dat source.cal src_theta 0 1 0.5\n"
+      "office_dist light office_light 0 0 3 40 40 40\n" +
+      square("office_light", 0) + square("wall", 1));
+  EXPECT_TRUE((scene.materials[scene.polygons[0].material].exitance == 0).all());
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U);
+}
+
 TEST_F(Radiance, WhatIsLeftOutIsNamed) {
   const Scene scene =
       scene_with(square("shiny", 0) + square("papered", 1) + square("void", 2) + square("beam", 3) +
