@@ -155,10 +155,10 @@ Comparison compare(const Scene& scene, const Request& request, const CompareOpti
     Solution reference = solve(transport, problem, exact, watch);
     comparison.reference_residual = reference.history.back().relative_residual;
     if (!reference.trapped.empty()) return reference;
-    const Eigen::ArrayXd strongest_lamp = highest(problem.exitance);
+    const Eigen::ArrayXd strongest_source = source_radiosity(problem).colwise().maxCoeff();
     const SpectralRadius radius = spectral_radius_with_error(transport, problem, 60);
-    comparison.spectral_radius = largest((strongest_lamp > 0).select(radius.value, 0.0));
-    comparison.spectral_radius_error = largest((strongest_lamp > 0).select(radius.error, 0.0));
+    comparison.spectral_radius = largest((strongest_source > 0).select(radius.value, 0.0));
+    comparison.spectral_radius_error = largest((strongest_source > 0).select(radius.error, 0.0));
     const ConvergenceTest test{options, reference.radiosity};
     for (const Contestant& contestant : options.contestants) {
       if (keeps_entries(contestant.storage))

@@ -13,8 +13,8 @@ PLOTS = [f"error_by_{x}.{kind}" for x in ("application", "iteration", "second") 
 
 
 class CompareTest(ToolTest):
-    def compare(self, *words, out="out"):
-        done = self.run_tool("compare-solvers", "room.obj", "--patches", 300, "-o", out, *words)
+    def compare(self, *words, out="out", model="room.obj"):
+        done = self.run_tool("compare-solvers", model, "--patches", 300, "-o", out, *words)
         self.assertEqual(done.returncode, GOOD, done.stderr)
         self.assertNotIn("warning", done.stderr)
         return done, json.loads((self.folder / out / "compare.json").read_text())
@@ -53,6 +53,13 @@ class CompareTest(ToolTest):
         self.assertLess(abs(facts["runs"][0]["rate"] / facts["spectral_radius"] - 1), 0.02)
         # Row sums of the closed room are 1 within 1e-9.
         self.assertLess(facts["spectral_radius"], facts["highest_reflectance"] * (1 + 1e-9))
+
+    def test_the_spectral_radius_is_that_of_the_room_whatever_lights_it(self):
+        _, by_lamp = self.compare("--solvers", "cg")
+        self.write("lit.toml", '[[model]]\nfile = "room.obj"\n[[luminaire]]\nkind = "point"\nposition = [0.5, 0.5, 0.5]\nlumens = 800\n')
+        _, by_luminaire = self.compare("--solvers", "cg", "--set", "lamp.exitance=0", out="lit", model="lit.toml")
+        self.assertGreater(by_luminaire["spectral_radius"], 0)
+        self.assertAlmostEqual(by_luminaire["spectral_radius"] / by_lamp["spectral_radius"], 1, 3)
 
     def test_tables_say_what_the_json_says(self):
         _, facts = self.compare("--solvers", "cg,progressive,progressive-on-demand")
