@@ -21,7 +21,7 @@
 
 namespace patchlight {
 
-ChoiceOfLamps::Chosen ChoiceOfLamps::at(double u) const {
+EmitterChoice::Chosen EmitterChoice::at(double u) const {
   const double place = u * before.back();
   const auto next = std::upper_bound(before.begin(), before.end() - 1, place);
   const auto k = static_cast<std::size_t>(next - before.begin()) - 1;
@@ -29,17 +29,17 @@ ChoiceOfLamps::Chosen ChoiceOfLamps::at(double u) const {
   return {lamps[k], of_lamp / before.back(), std::clamp((place - before[k]) / of_lamp, 0.0, 1.0)};
 }
 
-double ChoiceOfLamps::probability_of(PatchIndex patch) const {
+double EmitterChoice::probability_of(PatchIndex patch) const {
   const auto place = std::lower_bound(lamps.begin(), lamps.end(), patch);
   if (place == lamps.end() || *place != patch) return 0;
   const auto k = static_cast<std::size_t>(place - lamps.begin());
   return (before[k + 1] - before[k]) / before.back();
 }
 
-ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
-                              const Field& exitance) {
+EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
+                                 const Field& exitance) {
   constexpr double least_cosine = 0.05;  // of a lamp whose centroid is below the horizon some may be above it
-  ChoiceOfLamps choice{lamps, {0}};
+  EmitterChoice choice{lamps, {0}};
   for (const PatchIndex lamp : lamps) {
     const Vector toward = mesh.centroid[lamp] - mesh.centroid[patch];
     const double squared = toward.squaredNorm() + mesh.area[lamp];
@@ -51,8 +51,8 @@ ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std
   return choice;
 }
 
-ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance) {
-  ChoiceOfLamps choice{lamps, {0}};
+EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance) {
+  EmitterChoice choice{lamps, {0}};
   for (const PatchIndex lamp : lamps)
     choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp]);
   return choice;
@@ -110,10 +110,10 @@ class Gather {
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
   bool finds_lamps(const Hit& hit) const;
-  double part_by_shadow_rays(const ChoiceOfLamps& choice, PatchIndex lamp, double geometry) const;
-  double from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+  double part_by_shadow_rays(const EmitterChoice& choice, PatchIndex lamp, double geometry) const;
+  double from_a_lamp(const EmitterChoice& choice, PatchIndex patch, const Point& point,
                      const std::array<double, 4>& sample) const;
-  double from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point, const Seen& seen) const;
+  double from_hemisphere(const EmitterChoice& choice, PatchIndex patch, const Point& point, const Seen& seen) const;
   double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
   const PatchMesh& mesh_;
@@ -122,7 +122,7 @@ class Gather {
   PatchLookup lookup_;
   std::vector<std::uint32_t> keys_;
   std::vector<PatchIndex> lamps_;
-  ChoiceOfLamps by_flux_;
+  EmitterChoice by_flux_;
   bool takes_by_flux_ = false;  // everywhere
   const Eigen::VectorXd& covered_;
   const Field& exitance_;
@@ -168,8 +168,9 @@ std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& r
 Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const {
   Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
   if (lamps_.empty()) return irradiance;
-  const ChoiceOfLamps for_patch = takes_by_flux_ ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
-  const ChoiceOfLamps& choice = takes_by_flux_ ? by_flux_ : for_patch;
+  const EmitterChoice for_patch =
+      takes_by_flux_ ? EmitterChoice{} : emitter_choice_for(mesh_, patch, lamps_, exitance_);
+  const EmitterChoice& choice = takes_by_flux_ ? by_flux_ : for_patch;
   const auto samples =
       scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, stream::lamps_at_quarters));
   std::vector<Segment> segments;
@@ -199,13 +200,13 @@ bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.r
 
 // Shadow rays go to points of lamps with the density q_j / A_j, q_j the probability of lamp j, and rays over the
 // hemisphere meet these with the density G: the share of the former by the balance heuristic (Veach and Guibas 1995).
-double Gather::part_by_shadow_rays(const ChoiceOfLamps& choice, PatchIndex lamp, double geometry) const {
+double Gather::part_by_shadow_rays(const EmitterChoice& choice, PatchIndex lamp, double geometry) const {
   const double density = choice.probability_of(lamp) / mesh_.area[lamp];
   return density / (density + geometry);
 }
 
 // E h G V / p summed over the bands, times its part, for a point of a lamp that is chosen with the density p.
-double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+double Gather::from_a_lamp(const EmitterChoice& choice, PatchIndex patch, const Point& point,
                            const std::array<double, 4>& sample) const {
   const auto [lamp, probability, u] = choice.at(sample[2]);
   const Point to = square_to_quad(mesh_.corner_points(lamp).points, u, sample[3]);
@@ -219,7 +220,7 @@ double Gather::from_a_lamp(const ChoiceOfLamps& choice, PatchIndex patch, const 
 }
 
 // The light of a ray over the hemisphere at a point of a patch, summed over the bands.
-double Gather::from_hemisphere(const ChoiceOfLamps& choice, PatchIndex patch, const Point& point,
+double Gather::from_hemisphere(const EmitterChoice& choice, PatchIndex patch, const Point& point,
                                const Seen& seen) const {
   if (seen.sight != Sight::patch) return 0;
   const SidePoint at{seen.met->polygon, seen.met->side, seen.met->point};
@@ -240,8 +241,8 @@ double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) 
   const double whole = irradiance_.row(patch).sum();
   // With few lamps, each is weighed for each point.
   const bool takes_by_flux = lamps_.empty() || lamps_.size() > 16;
-  const ChoiceOfLamps for_patch = takes_by_flux ? ChoiceOfLamps{} : choice_of_lamps(mesh_, patch, lamps_, exitance_);
-  const ChoiceOfLamps& choice = takes_by_flux ? by_flux_ : for_patch;
+  const EmitterChoice for_patch = takes_by_flux ? EmitterChoice{} : emitter_choice_for(mesh_, patch, lamps_, exitance_);
+  const EmitterChoice& choice = takes_by_flux ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   double there = 0;
   std::vector<Ray> rays;

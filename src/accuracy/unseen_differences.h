@@ -15,7 +15,7 @@
 namespace patchlight {
 
 /// Emitting patches with cumulative fluxes, to choose one with a probability roughly proportional to its flux.
-struct ChoiceOfLamps {
+struct EmitterChoice {
   std::vector<PatchIndex> lamps;  ///< in the order of the mesh
   std::vector<double> before;     ///< cumulative flux before each lamp, W; one more entry at the end
 
@@ -33,11 +33,11 @@ struct ChoiceOfLamps {
 };
 
 /// Weighs lamps by their unoccluded flux to a patch; all have some probability. O(lamps).
-ChoiceOfLamps choice_of_lamps(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
-                              const Field& exitance);
+EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
+                                 const Field& exitance);
 
 /// Weighs lamps by their total flux. O(lamps).
-ChoiceOfLamps choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance);
+EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance);
 
 class Occluder;
 

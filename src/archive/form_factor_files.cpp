@@ -255,9 +255,9 @@ bool is_earlier_form_factors(const std::filesystem::path& folder) {
                                                              file_name::hit_distance,
                                                              file_name::directed,
                                                              file_name::lamps,
-                                                             file_name::lamp_factors[0],
-                                                             file_name::lamp_factors[1],
-                                                             file_name::lamp_standard_error,
+                                                             file_name::emitter_factors[0],
+                                                             file_name::emitter_factors[1],
+                                                             file_name::emitter_standard_error,
                                                              file_name::specular_kinds};
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();

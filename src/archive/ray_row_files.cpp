@@ -328,13 +328,13 @@ void write_lamps(const std::filesystem::path& folder, const RayExchange& exchang
   std::vector<std::int64_t> ranges;
   for (const auto& [begin, end] : exchange.lamps) ranges.insert(ranges.end(), {begin, end});
   write_as<std::int64_t>(folder / file_name::lamps, ranges);
-  const auto write = [&](const char* name, const LampValues& values) {
+  const auto write = [&](const char* name, const EmitterValues& values) {
     const std::span<const float> all(values.data(), static_cast<std::size_t>(values.size()));
     write_npy_numbers(folder / name, all);
   };
-  const LampFactors& factors = exchange.lamp_factors;
-  for (std::size_t half = 0; half < 2; ++half) write(file_name::lamp_factors.at(half), factors.halves.at(half));
-  write(file_name::lamp_standard_error, factors.standard_error);
+  const EmitterFactors& factors = exchange.emitter_factors;
+  for (std::size_t half = 0; half < 2; ++half) write(file_name::emitter_factors.at(half), factors.halves.at(half));
+  write(file_name::emitter_standard_error, factors.standard_error);
 }
 
 Json files_of_rows(bool is_specular) {
@@ -351,9 +351,9 @@ Json files_of_rows(bool is_specular) {
   if (is_specular)
     for (const auto& [name, meaning_of_file] : meaning_of_stop_files()) part[name] = meaning_of_file;
   part[file_name::lamps] = "first patch of each lamp that is apart from the rows, and the one after its last";
-  for (const char* name : file_name::lamp_factors)
+  for (const char* name : file_name::emitter_factors)
     part[name] = "form factors to these lamps as wholes, row by row, a column for each; unit 1";
-  part[file_name::lamp_standard_error] = "standard error of the mean of both";
+  part[file_name::emitter_standard_error] = "standard error of the mean of both";
   part[file_name::hit_distance] = "harmonic mean of the lengths of each patch's rays; unit m";
   part[file_name::directed] = "per patch 1 when it was bright, so that rays were sent towards it on purpose";
   part[file_name::area] = "exposed area A_i of each patch; unit m^2";
@@ -456,14 +456,14 @@ void require_sums(const std::filesystem::path& file, const RayRows& rows, const 
   }
 }
 
-LampValues read_lamp_values(const std::filesystem::path& file, std::size_t patches, std::size_t lamps) {
+EmitterValues read_lamp_values(const std::filesystem::path& file, std::size_t patches, std::size_t lamps) {
   // A form factor is a mean of shares of the hemisphere.
   const LargeArray<float> stored = read_npy_numbers<float>(file, patches * lamps);
   const auto is_factor = [](float value) { return value >= 0 && value <= 1.001F; };
   const auto other = std::find_if_not(stored.begin(), stored.end(), is_factor);
   if (other != stored.end()) refuse(file, "a form factor of " + std::to_string(*other), "numbers from 0 to 1");
-  return Eigen::Map<const LampValues>(stored.data(), static_cast<Eigen::Index>(patches),
-                                      static_cast<Eigen::Index>(lamps));
+  return Eigen::Map<const EmitterValues>(stored.data(), static_cast<Eigen::Index>(patches),
+                                         static_cast<Eigen::Index>(lamps));
 }
 
 bool is_side(const PatchMesh& mesh, const PatchRange& patches) {
@@ -545,11 +545,11 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
   rows.directed = read_npy_bytes(folder / file_name::directed, patches);
   rows.rays = rows.halves[0].hits.size() + rows.halves[1].hits.size();
   exchange.lamps = read_lamps(folder / file_name::lamps, mesh);
-  LampFactors& factors = exchange.lamp_factors;
+  EmitterFactors& factors = exchange.emitter_factors;
   for (std::size_t half = 0; half < 2; ++half)
     factors.halves.at(half) =
-        read_lamp_values(folder / file_name::lamp_factors.at(half), patches, exchange.lamps.size());
-  factors.standard_error = read_lamp_values(folder / file_name::lamp_standard_error, patches, exchange.lamps.size());
+        read_lamp_values(folder / file_name::emitter_factors.at(half), patches, exchange.lamps.size());
+  factors.standard_error = read_lamp_values(folder / file_name::emitter_standard_error, patches, exchange.lamps.size());
   exchange.specular_kinds = std::move(kinds);
   return exchange;
 }

@@ -19,7 +19,7 @@ enum Stream : std::uint64_t {
   lost_rays = 1,      // pairs alone
   ways_at_panes = 2,  // rays alone
   row_estimate = 2,   // pairs alone
-  points_on_lamps = 3,
+  points_on_emitters = 3,
 
   // Signs of the errors of patches
   signs_of_direct_light = 2,
@@ -58,10 +58,8 @@ enum Stream : std::uint64_t {
   lights_of_bounce = 4,
   panes_of_bounce = 5,
   next_bounce = 6,
-  choice_of_lamp = 11,
-  place_on_lamp = 12,
-  choice_of_luminaire = 13,
-  place_on_luminaire = 14,
+  choice_of_source = 11,
+  place_on_source = 12,
   sky_openings = 21,
   sky_hemisphere = 22,
   ambient_occlusion = 31,

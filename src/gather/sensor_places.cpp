@@ -196,7 +196,7 @@ bool Walls::is_inside(const Point& point, const Hits& hits, PolygonIndex shell, 
          !sees_lamp(point, hits);
 }
 
-std::vector<Point> points_on_lamps(const Scene& scene, std::span<const Facet> facets) {
+std::vector<Point> points_on_emitters(const Scene& scene, std::span<const Facet> facets) {
   std::vector<Point> lamps;
   for (PolygonIndex p = 0; p < facets.size(); ++p) {
     if (is_lamp(scene, p)) lamps.push_back(area_centroid(facets[p].corners));
@@ -216,7 +216,7 @@ std::vector<std::uint8_t> inside_walls(const Scene& scene, const KeptSides& side
                     geometry->shells,
                     welded(scene.vertices, weld_distance(scene)),
                     tolerance_of_coordinates * extent_of(scene),
-                    points_on_lamps(scene, facets)};
+                    points_on_emitters(scene, facets)};
 
   // 1. The surroundings of each point: sides that are not simulated, or a shell that may be a wall
   std::vector<std::uint8_t> inside(points.size(), 0);

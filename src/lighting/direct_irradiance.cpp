@@ -4,6 +4,7 @@
 #include "base/sampling.h"
 #include "base/tolerances.h"
 #include "form_factor/point_polygon.h"
+#include "lighting/irradiance_in_mirrors.h"
 #include "lighting/receiver.h"
 #include "lighting/shades.h"
 #include "lighting/sky_irradiance.h"
@@ -21,28 +22,10 @@
 namespace patchlight {
 namespace {
 
-// Means of irradiances of one receiver: one row for each set of samples, one column per band.
-struct Means {
-  Field of_sets;
-  Spectrum missed = {};  // an allowance for the light that one ray more may find, W/m^2; empty: not known, or nothing
-};
-
 // The share that shadows leave of the light on a patch, per band.
 struct LeftByShadows {
   Spectrum share;
   Spectrum standard_error;  // of the share, as each sixteenth of a patch counts with its mean irradiance
-};
-
-// A source of light that is no patch.
-struct SampledSource {
-  // The means at a receiver, with or without shadows.
-  std::function<Means(const Receiver&, std::span<const ReceiverSamples>, bool in_shadow)> means_at;
-  std::uint32_t samples = 0;  // LightingOptions
-  bool has_extent = false;
-  int effort = 1;  // times the samples where rays have to find the shadows of a light without extent, or at a point
-  std::function<std::optional<LeftByShadows>(const Receiver&)> left = {};  // on a patch, without extent
-  std::function<Spectrum(const Receiver&)> unshadowed = {};                // in the middle, without extent
-  std::function<bool(const Receiver&)> may_be_hidden = {};                 // with extent
 };
 
 // Nearer to the plane of a patch, relative to its corners' distance, a luminaire counts as in the plane.
@@ -70,30 +53,30 @@ struct SeenPatch {
   double weights = 0;  // of all points, those under other polygons as well
   std::vector<Segment> segments;
   std::vector<double> intensities;  // times the points' weights
-  const Spectrum* colour = nullptr;
+  const Spectrum* color = nullptr;
 };
 
-SeenPatch seen_patch(const Lighting& lighting, const Luminaire& luminaire, const Receiver& receiver,
-                     SamplePoints rays) {
+SeenPatch seen_patch(const Lighting& lighting, const LightSource& source, const Receiver& receiver, SamplePoints rays) {
+  const Point& position = source.extent().ball.centre;
   SurfacePoint at = receiver.place(0.5, 0.5);
   SeenPatch seen;
-  if (!is_before(luminaire.position, receiver, at.normal)) return seen;
+  if (!is_before(position, receiver, at.normal)) return seen;
   for (const auto& [u, v, s, t] : rays) {
-    const SeenPoint sample = sample_seen_point(luminaire.position, receiver.corners, u, v);
+    const SeenPoint sample = sample_seen_point(position, receiver.corners, u, v);
     if (!(sample.solid_angle > 0)) return {};
     seen.solid_angle = sample.solid_angle;
     seen.weights += sample.weight;
     at.point = sample.point;
     if (is_covered(lighting, receiver, at)) continue;
-    const Arrival arrival = from_luminaire(luminaire, lighting.up, at, {s, t});
-    if (!(arrival.irradiance > 0)) continue;
+    const LightSample arriving = source.sample(at, {s, t});
+    if (!(arriving.irradiance > 0)) continue;
     // I = E d^2 / cos theta
-    const Vector way = arrival.from - at.point;
+    const Vector way = arriving.from - at.point;
     const double square = way.squaredNorm();
-    const double intensity = arrival.irradiance * square * std::sqrt(square) / at.normal.dot(way);
-    seen.segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
+    const double intensity = arriving.irradiance * square * std::sqrt(square) / at.normal.dot(way);
+    seen.segments.push_back(segment_to(arriving, at));
     seen.intensities.push_back(sample.weight * intensity);
-    seen.colour = arrival.colour;
+    seen.color = arriving.color;
   }
   return seen;
 }
@@ -105,11 +88,8 @@ struct Kernel {
   double scatter = 0;  // in the part, if it is evenly distributed between the extremes
 };
 
-Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std::array<Point, 4>& corners,
-                 const Vector& normal) {
-  const auto at = [&](const Point& point) {
-    return from_luminaire(luminaire, lighting.up, {point, normal, no_polygon}, {0.5, 0.5}).irradiance;
-  };
+Kernel kernel_of(const LightSource& source, const std::array<Point, 4>& corners, const Vector& normal) {
+  const auto at = [&](const Point& point) { return source.sample({point, normal, no_polygon}, {0.5, 0.5}).irradiance; };
   const double middle = at((corners[0] + corners[1] + corners[2] + corners[3]) / 4);
   double lowest = middle, highest = middle, sum = 0;
   for (const Point& corner : corners) {
@@ -125,19 +105,19 @@ Kernel kernel_of(const Lighting& lighting, const Luminaire& luminaire, const std
 // Mean irradiance of a patch by a luminaire without extent, over the part over which no other polygon lies. Points of
 // the patch are chosen by the solid angle under which the luminaire sees it, so that without shadows an isotropic one
 // leaves no variance however near it is.
-Spectrum luminaire_irradiance(const Lighting& lighting, const Luminaire& luminaire, const Receiver& receiver,
+Spectrum luminaire_irradiance(const Lighting& lighting, const LightSource& source, const Receiver& receiver,
                               const ReceiverSamples& samples, bool in_shadow) {
   Spectrum sum = Spectrum::Zero(lighting.bands);
-  const SeenPatch seen = seen_patch(lighting, luminaire, receiver, samples.rays);
+  const SeenPatch seen = seen_patch(lighting, source, receiver, samples.rays);
   if (seen.segments.empty()) return sum;
   const double share = exposed_share(lighting, receiver, samples.places);
   if (!(share > 0)) return sum;
   if (in_shadow) {
     const Field transmittance = lighting.paths.transmittance(seen.segments);
     for (std::size_t k = 0; k < seen.intensities.size(); ++k)
-      sum += seen.intensities[k] * transmittance.row(static_cast<Eigen::Index>(k)) * *seen.colour;
+      sum += seen.intensities[k] * transmittance.row(static_cast<Eigen::Index>(k)) * *seen.color;
   } else {
-    for (const double intensity : seen.intensities) sum += intensity * *seen.colour;
+    for (const double intensity : seen.intensities) sum += intensity * *seen.color;
   }
   // E = 1 / A times the integral of I tau over the solid angle; the weights' mean, which is 1, is divided by because
   // what both vary by cancels.
@@ -145,13 +125,14 @@ Spectrum luminaire_irradiance(const Lighting& lighting, const Luminaire& luminai
 }
 
 // Found by the outlines of all shadows; nothing where they are too many (Shades).
-std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Luminaire& luminaire,
+std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const LightSource& source,
                                              const Receiver& receiver) {
-  const LightPlace light{luminaire.position, 1};
+  const SourceExtent& extent = source.extent();
+  const LightPlace light = extent.direction ? LightPlace{*extent.direction, 0} : LightPlace{extent.ball.centre, 1};
   const Spectrum none = Spectrum::Zero(lighting.bands);
   const auto whole = lighting.shades->transmittance(receiver, light);
   if (!whole) return std::nullopt;
-  if ((*whole == 0).all() || (*whole == 1).all()) return LeftByShadows{*whole, none};
+  if (extent.direction || (*whole == 0).all() || (*whole == 1).all()) return LeftByShadows{*whole, none};
 
   // Each part by its mean irradiance without shadows.
   const auto parts = lighting.shades->lit_parts(receiver, light);
@@ -162,7 +143,7 @@ std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Lum
   double all = 0;
   for (const LitPart& part : *parts) {
     if (!(part.exposed > 0)) continue;
-    const Kernel kernel = kernel_of(lighting, luminaire, part.corners, normal);
+    const Kernel kernel = kernel_of(source, part.corners, normal);
     all += part.exposed * kernel.mean;
     lit += part.lit * kernel.mean;
     error += part.uneven * kernel.scatter + part.lit * kernel.error + part.doubt * kernel.mean;
@@ -172,28 +153,26 @@ std::optional<LeftByShadows> left_by_shadows(const Lighting& lighting, const Lum
   return LeftByShadows{lit / all, error / all};
 }
 
-using ArrivalAt = std::function<Arrival(const SurfacePoint&, const Eigen::Vector2d&)>;
-
-// Means over the sets of light that comes from one direction for each sample. Places over which another polygon lies do
-// not count. The shadow rays of all sets are traced together.
-Field means_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, const Receiver& receiver,
-                        std::span<const ReceiverSamples> sets, bool in_shadow) {
+// Means over the sets of samples, each with one point of the source. Places over which another polygon lies do not
+// count. The shadow rays of all sets are traced together.
+Field means_of_samples(const Lighting& lighting, const LightSource& source, const Receiver& receiver,
+                       std::span<const ReceiverSamples> sets, bool in_shadow) {
   struct OfSet {
     Eigen::Index set;
-    Arrival arrival;
+    LightSample sample;
   };
   std::vector<Segment> segments;
-  std::vector<OfSet> arrivals;
+  std::vector<OfSet> arriving;
   std::vector<std::size_t> exposed(sets.size(), 0);
   for (std::size_t n = 0; n < sets.size(); ++n) {
     for (const auto& [u, v, s, t] : sets[n].rays) {
       const SurfacePoint at = receiver.place(u, v);
       if (is_covered(lighting, receiver, at)) continue;
       ++exposed[n];
-      const Arrival arrival = arrival_at(at, {s, t});
-      if (!(arrival.irradiance > 0)) continue;
-      segments.push_back({at.point, arrival.from, at.polygon, no_polygon});
-      arrivals.push_back({static_cast<Eigen::Index>(n), arrival});
+      const LightSample sample = source.sample(at, {s, t});
+      if (!(sample.irradiance > 0)) continue;
+      segments.push_back(segment_to(sample, at));
+      arriving.push_back({static_cast<Eigen::Index>(n), sample});
     }
   }
   Field means = Field::Zero(static_cast<Eigen::Index>(sets.size()), lighting.bands);
@@ -201,98 +180,46 @@ Field means_of_arrivals(const Lighting& lighting, const ArrivalAt& arrival_at, c
   const Field transmittance = in_shadow
                                   ? lighting.paths.transmittance(segments)
                                   : Field(Field::Ones(static_cast<Eigen::Index>(segments.size()), lighting.bands));
-  for (std::size_t k = 0; k < arrivals.size(); ++k) {
-    const auto& [set, arrival] = arrivals[k];
-    means.row(set) += arrival.irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *arrival.colour;
+  for (std::size_t k = 0; k < arriving.size(); ++k) {
+    const auto& [set, sample] = arriving[k];
+    means.row(set) += sample.irradiance * transmittance.row(static_cast<Eigen::Index>(k)) * *sample.color;
   }
   for (std::size_t n = 0; n < sets.size(); ++n)
     means.row(static_cast<Eigen::Index>(n)) /= static_cast<double>(std::max<std::size_t>(1, exposed[n]));
   return means;
 }
 
-SampledSource source_of(const Lighting& lighting, const Luminaire& luminaire, std::uint32_t samples) {
-  constexpr int effort = 4;
-  const ArrivalAt arrival_at = [&lighting, &luminaire](const SurfacePoint& at, const Eigen::Vector2d& uv) {
-    return from_luminaire(luminaire, lighting.up, at, uv);
-  };
-  const auto means_at = [&lighting, &luminaire, arrival_at](
-                            const Receiver& receiver, std::span<const ReceiverSamples> sets, bool in_shadow) -> Means {
-    if (receiver.is_point() || std::holds_alternative<SphericalLamp>(luminaire.light))
-      return {means_of_arrivals(lighting, arrival_at, receiver, sets, in_shadow)};
-    Field means(static_cast<Eigen::Index>(sets.size()), lighting.bands);
-    for (std::size_t k = 0; k < sets.size(); ++k)
-      means.row(static_cast<Eigen::Index>(k)) = luminaire_irradiance(lighting, luminaire, receiver, sets[k], in_shadow);
-    return {means};
-  };
-  if (const auto* sphere = std::get_if<SphericalLamp>(&luminaire.light)) {
-    const auto may_be_hidden = [&lighting, &luminaire, radius = sphere->radius](const Receiver& receiver) {
-      const SurfacePoint middle = receiver.place(0.5, 0.5);
-      const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
-      return lighting.paths.may_be_hidden(places, middle.normal, luminaire.position, radius);
-    };
-    return {
-        .means_at = means_at, .samples = samples, .has_extent = true, .effort = effort, .may_be_hidden = may_be_hidden};
-  }
-  const auto left = [&](const Receiver& receiver) { return left_by_shadows(lighting, luminaire, receiver); };
-  const auto unshadowed = [&lighting, arrival_at](const Receiver& receiver) {
-    const Arrival arrival = arrival_at(receiver.place(0.5, 0.5), {0.5, 0.5});
-    if (!(arrival.irradiance > 0)) return Spectrum(Spectrum::Zero(lighting.bands));
-    return Spectrum(arrival.irradiance * *arrival.colour);
-  };
-  return {means_at, samples, false, effort, left, unshadowed};
+// The irradiance in the middle of a receiver, by one point of a source and without shadows.
+Spectrum unshadowed_irradiance(const Lighting& lighting, const LightSource& source, const Receiver& receiver) {
+  const LightSample sample = source.sample(receiver.place(0.5, 0.5), {0.5, 0.5});
+  if (!(sample.irradiance > 0)) return Spectrum::Zero(lighting.bands);
+  return sample.irradiance * *sample.color;
 }
 
-SampledSource sun_of(const Lighting& lighting, std::uint32_t samples) {
-  const auto unshadowed = [&lighting](const Receiver& receiver) {
-    const Arrival arrival = from_sun(lighting, receiver.place(0.5, 0.5));
-    return Spectrum(arrival.irradiance * lighting.sun->normal_irradiance);
-  };
-  const auto means_at = [&lighting, unshadowed](const Receiver& receiver, std::span<const ReceiverSamples> sets,
-                                                bool in_shadow) -> Means {
-    if (!in_shadow) return {unshadowed(receiver).replicate(static_cast<Eigen::Index>(sets.size()), 1)};
-    const auto arrival_at = [&](const SurfacePoint& at, const Eigen::Vector2d&) { return from_sun(lighting, at); };
-    return {means_of_arrivals(lighting, arrival_at, receiver, sets, true)};
-  };
-  const auto left = [&lighting](const Receiver& receiver) -> std::optional<LeftByShadows> {
-    const auto share = lighting.shades->transmittance(receiver, {lighting.sun->direction, 0});
-    if (!share) return std::nullopt;
-    return LeftByShadows{*share, Spectrum::Zero(lighting.bands)};
-  };
-  return {.means_at = means_at, .samples = samples, .effort = 64, .left = left, .unshadowed = unshadowed};
-}
-
-Means means_of_sky(const Lighting& lighting, const Receiver& receiver, std::span<const ReceiverSamples> sets) {
-  const SkyAim aim = sky_aim(lighting, receiver, receiver.is_point() ? AimFor::points : AimFor::patch);
+// Means over the sets of one source, with or without shadows.
+Field means_of_source(const Lighting& lighting, const LightSource& source, const Receiver& receiver,
+                      std::span<const ReceiverSamples> sets, bool in_shadow) {
+  const bool is_sun = source.extent().direction.has_value();
+  if (is_sun && !in_shadow)
+    return unshadowed_irradiance(lighting, source, receiver).replicate(static_cast<Eigen::Index>(sets.size()), 1);
+  if (!source.is_delta() || is_sun || receiver.is_point())
+    return means_of_samples(lighting, source, receiver, sets, in_shadow);
   Field means(static_cast<Eigen::Index>(sets.size()), lighting.bands);
-  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
-  for (std::size_t k = 0; k < sets.size(); ++k) {
-    const SkyLight found = sky_irradiance(lighting, receiver, aim, sets[k].rays);
-    means.row(static_cast<Eigen::Index>(k)) = found.irradiance;
-    seen.aimed += found.seen.aimed;
-    std::transform(seen.through.begin(), seen.through.end(), found.seen.through.begin(), seen.through.begin(),
-                   std::bit_or<>());
-  }
-  if (!receiver.is_point() || seen.aimed == 0) return {means};
-  return {means, missed_sky(lighting, receiver.place(0.5, 0.5), aim, seen)};
+  for (std::size_t k = 0; k < sets.size(); ++k)
+    means.row(static_cast<Eigen::Index>(k)) = luminaire_irradiance(lighting, source, receiver, sets[k], in_shadow);
+  return means;
 }
 
-std::vector<SampledSource> sampled_sources(const Lighting& lighting, const LightingOptions& options) {
-  std::vector<SampledSource> sources;
-  for (const Luminaire& luminaire : lighting.luminaires)
-    sources.push_back(source_of(lighting, luminaire, static_cast<std::uint32_t>(options.lamp_samples)));
-  if (lighting.sun) sources.push_back(sun_of(lighting, static_cast<std::uint32_t>(options.sun_samples)));
-  if (lighting.sky) {
-    const auto means_at = [&lighting](const Receiver& receiver, std::span<const ReceiverSamples> sets, bool) {
-      return means_of_sky(lighting, receiver, sets);
-    };
-    sources.push_back({means_at, static_cast<std::uint32_t>(options.sky_samples), true});
-  }
-  return sources;
+bool may_be_hidden(const Lighting& lighting, const LightSource& source, const Receiver& receiver) {
+  const SurfacePoint middle = receiver.place(0.5, 0.5);
+  const std::vector<Point> places = receiver.is_point() ? std::vector<Point>{middle.point} : receiver.corners;
+  const Ball& ball = source.extent().ball;
+  return lighting.paths.may_be_hidden(places, middle.normal, ball.centre, ball.radius);
 }
 
 // Independent estimates of each irradiance; no more than there are samples. Their spread is its standard error. That of
 // four is often small by chance: patches take the mean of those around, which points do not have.
-constexpr std::uint32_t replicates = 4;
+constexpr std::uint32_t replicates_on_patch = 4;
 constexpr std::uint32_t replicates_at_points = 16;
 
 // Scrambles of the Sobol points that receivers and sources choose from, each with shifts of its own.
@@ -305,25 +232,38 @@ struct SampleSets {
   std::size_t samples() const { return count * each; }
 };
 
-struct Estimator {
-  Eigen::Index bands = 0;
-  std::vector<SampledSource> sources;
-  std::vector<std::vector<std::array<double, 4>>> points;  // per scramble
+// Multiples of the samples: of a luminaire and the sun on a patch where rays have to find the shadows, and of a sphere
+// at a point.
+constexpr int effort_for_luminaires = 4;
+constexpr int effort_for_sun = 64;
 
-  // One row for each of so many sets.
-  Means replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
+struct Estimator {
+  const LightSampler& lights;
+  const LightingOptions& options;
+  std::vector<std::vector<std::array<double, 4>>> points = {};  // per scramble
+
+  const Lighting& lighting() const { return lights.lighting(); }
+  SampleSets sets_of(const LightSource& source, const Receiver& receiver, double effort, bool more) const;
+  // One row for each of so many sets. `means_of` returns those of all sets.
+  template <class MeansOf>
+  auto replicates(std::uint32_t key, SampleSets sets, const MeansOf& means_of) const;
+  Field replicates_of(const LightSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
                       bool in_shadow) const;
-  // With `effort` times the samples.
-  Estimate by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
+  Estimate by_delta_source(const LightSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
+  Estimate by_sphere(const LightSource& source, const Receiver& receiver, std::uint32_t key, double effort) const;
+  Estimate by_sky(const Receiver& receiver, std::uint32_t key, double effort) const;
+  Estimate at(const Receiver& receiver, std::uint64_t number, double effort) const;
 };
 
 // For receivers that take up to 2^doublings times the samples.
-Estimator estimator_for(const Lighting& lighting, const LightingOptions& options, int doublings) {
-  Estimator estimator{lighting.bands, sampled_sources(lighting, options), {}};
-  std::uint32_t most = replicates;
-  for (const SampledSource& source : estimator.sources)
-    most = std::max(most, (static_cast<std::uint32_t>(source.effort) * source.samples) << doublings);
-  const std::uint32_t count = most / replicates;
+Estimator estimator_for(const LightSampler& lights, const LightingOptions& options, int doublings) {
+  Estimator estimator{lights, options};
+  const Lighting& lighting = lights.lighting();
+  int most = 1;
+  if (!lighting.luminaires.empty()) most = std::max(most, effort_for_luminaires * options.luminaire_samples);
+  if (lighting.sun) most = std::max(most, effort_for_sun * options.sun_samples);
+  if (lighting.sky) most = std::max(most, options.sky_samples);
+  const std::uint32_t count = std::max(1U, (static_cast<std::uint32_t>(most) << doublings) / replicates_on_patch);
   for (std::uint32_t k = 0; k < scrambles; ++k)
     estimator.points.push_back(scrambled_sobol(count, hash({options.seed, k})));
   return estimator;
@@ -340,13 +280,20 @@ Spectrum missed_variance(const Field& arriving, const Field& unshadowed, std::si
 
 // A patch has no more sets than samples.
 SampleSets sets_of(double samples, bool at_point) {
-  const auto most = static_cast<std::uint32_t>(std::clamp(samples, 1.0, static_cast<double>(replicates)));
+  const auto most = static_cast<std::uint32_t>(std::clamp(samples, 1.0, static_cast<double>(replicates_on_patch)));
   return {at_point ? replicates_at_points : most,
-          static_cast<std::size_t>(std::max(1.0, samples / (at_point ? replicates : most)))};
+          static_cast<std::size_t>(std::max(1.0, samples / (at_point ? replicates_on_patch : most)))};
 }
 
-Means Estimator::replicates_by(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
-                               SampleSets sets, bool in_shadow) const {
+SampleSets Estimator::sets_of(const LightSource& source, const Receiver& receiver, double effort, bool more) const {
+  const bool is_sun = source.extent().direction.has_value();
+  const int samples = is_sun ? options.sun_samples : options.luminaire_samples;
+  const int times = more ? (is_sun ? effort_for_sun : effort_for_luminaires) : 1;
+  return patchlight::sets_of(effort * times * samples, receiver.is_point());
+}
+
+template <class MeansOf>
+auto Estimator::replicates(std::uint32_t key, SampleSets sets, const MeansOf& means_of) const {
   std::vector<std::vector<std::array<double, 4>>> moved;
   std::vector<ReceiverSamples> of_sets;
   for (std::uint32_t k = 0; k < sets.count; ++k) {
@@ -354,79 +301,117 @@ Means Estimator::replicates_by(const SampledSource& source, const Receiver& rece
     moved.push_back(shifted(set.first(sets.each), hash({key, k})));
     of_sets.push_back({moved.back(), set});
   }
-  return source.means_at(receiver, of_sets, in_shadow);
+  return means_of(of_sets);
 }
 
-Estimate Estimator::by_one(const SampledSource& source, const Receiver& receiver, std::uint32_t key,
-                           double effort) const {
-  const Spectrum none = Spectrum::Zero(bands);
-  const bool is_point = receiver.is_point();
-  if (is_point && !source.has_extent) {
+Field Estimator::replicates_of(const LightSource& source, const Receiver& receiver, std::uint32_t key, SampleSets sets,
+                               bool in_shadow) const {
+  return replicates(key, sets, [&](std::span<const ReceiverSamples> of_sets) {
+    return means_of_source(lighting(), source, receiver, of_sets, in_shadow);
+  });
+}
+
+// A source without extent. At a point one shadow ray finds all. On a patch its shadows are exact where Shades has them,
+// and sampled elsewhere.
+Estimate Estimator::by_delta_source(const LightSource& source, const Receiver& receiver, std::uint32_t key,
+                                    double effort) const {
+  const Spectrum none = Spectrum::Zero(lighting().bands);
+  if (receiver.is_point()) {
     const SamplePoints one = SamplePoints(points[0]).first(1);
     const ReceiverSamples samples{one, one};
-    return {source.means_at(receiver, {&samples, 1}, true).of_sets.row(0), none};
+    return {means_of_samples(lighting(), source, receiver, {&samples, 1}, true).row(0), none};
   }
-  const auto left = source.left && !is_point ? source.left(receiver) : std::nullopt;
+  const auto left = left_by_shadows(lighting(), source, receiver);
   if (left && (left->share == 0).all()) return {none, none};
-
-  const bool more = source.has_extent ? is_point : !left;
-  const SampleSets sets = sets_of(effort * (more ? source.effort : 1) * source.samples, is_point);
-  // Few rays cost less than the test for free sight. At points, light without shadows has no error.
-  const bool is_worth_asking = source.may_be_hidden && (is_point || sets.samples() > 16);
-  const bool in_shadow = is_worth_asking ? source.may_be_hidden(receiver) : !left;
-  const auto [arriving, missed] = replicates_by(source, receiver, key, sets, in_shadow);
+  const SampleSets sets = sets_of(source, receiver, effort, !left);
+  const Field arriving = replicates_of(source, receiver, key, sets, !left);
   Estimate found = estimate_of(arriving);
-  if (missed.size() > 0) found.variance += missed.square();
   if (left)
     return {found.mean * left->share,
             found.variance * left->share.square() + (found.mean * left->standard_error).square()};
-  if (source.unshadowed) {
-    const Field unshadowed = source.unshadowed(receiver).replicate(arriving.rows(), 1);
-    found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
-  } else if (in_shadow && is_point && source.may_be_hidden) {
-    const Field unshadowed = replicates_by(source, receiver, key, sets, false).of_sets;
-    found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
-  }
+  const Field unshadowed = unshadowed_irradiance(lighting(), source, receiver).replicate(arriving.rows(), 1);
+  found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
   return found;
+}
+
+Estimate Estimator::by_sphere(const LightSource& source, const Receiver& receiver, std::uint32_t key,
+                              double effort) const {
+  const SampleSets sets = sets_of(source, receiver, effort, receiver.is_point());
+  // Few rays cost less than the test for free sight. At points, light without shadows has no error.
+  const bool is_worth_asking = receiver.is_point() || sets.samples() > 16;
+  const bool in_shadow = !is_worth_asking || may_be_hidden(lighting(), source, receiver);
+  const Field arriving = replicates_of(source, receiver, key, sets, in_shadow);
+  Estimate found = estimate_of(arriving);
+  if (!in_shadow || !receiver.is_point()) return found;
+  const Field unshadowed = replicates_of(source, receiver, key, sets, false);
+  found.variance = found.variance.max(missed_variance(arriving, unshadowed, sets.samples()));
+  return found;
+}
+
+Estimate Estimator::by_sky(const Receiver& receiver, std::uint32_t key, double effort) const {
+  const bool is_point = receiver.is_point();
+  const SkyAim aim = sky_aim(lighting(), receiver, is_point ? AimFor::points : AimFor::patch);
+  const SampleSets sets = patchlight::sets_of(effort * options.sky_samples, is_point);
+  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
+  const Field arriving = replicates(key, sets, [&](std::span<const ReceiverSamples> of_sets) {
+    Field means(static_cast<Eigen::Index>(of_sets.size()), lighting().bands);
+    for (std::size_t k = 0; k < of_sets.size(); ++k) {
+      const SkyLight found = sky_irradiance(lighting(), receiver, aim, of_sets[k].rays);
+      means.row(static_cast<Eigen::Index>(k)) = found.irradiance;
+      seen.aimed += found.seen.aimed;
+      std::transform(seen.through.begin(), seen.through.end(), found.seen.through.begin(), seen.through.begin(),
+                     std::bit_or<>());
+    }
+    return means;
+  });
+  Estimate found = estimate_of(arriving);
+  if (is_point && seen.aimed > 0)
+    found.variance += missed_sky(lighting(), receiver.place(0.5, 0.5), aim, seen).square();
+  return found;
+}
+
+// By all sources. `number` chooses the random numbers of the receiver.
+Estimate Estimator::at(const Receiver& receiver, std::uint64_t number, double effort) const {
+  Estimate sum{Spectrum::Zero(lighting().bands), Spectrum::Zero(lighting().bands)};
+  std::uint32_t source_number = 0;
+  const auto add = [&](const auto& estimate_by) {
+    const Estimate one = estimate_by(hash({options.seed, number, source_number++}));
+    sum.mean += one.mean;
+    sum.variance += one.variance;
+  };
+  for (const LightSource& source : lights.without_faces())
+    add([&](std::uint32_t key) {
+      return source.is_delta() ? by_delta_source(source, receiver, key, effort)
+                               : by_sphere(source, receiver, key, effort);
+    });
+  if (lighting().sky) add([&](std::uint32_t key) { return by_sky(receiver, key, effort); });
+  return sum;
 }
 
 // `receiver_at` and `effort_at` give the receiver of each number up to `count`, and times how many samples it takes.
 template <class ReceiverAt, class EffortAt>
-DirectIrradiance at_receivers(const Estimator& estimator, std::size_t count, const ReceiverAt& receiver_at,
-                              const EffortAt& effort_at, const LightingOptions& options, const Observer& observer) {
-  const auto rows = static_cast<Eigen::Index>(count);
-  DirectIrradiance direct{Field(rows, estimator.bands), Field(rows, estimator.bands)};
+DirectIrradiance straight_irradiance(const Estimator& estimator, std::size_t count, const ReceiverAt& receiver_at,
+                                     const EffortAt& effort_at, const Observer& observer) {
+  const LightSampler& lights = estimator.lights;
+  const Field none = Field::Zero(static_cast<Eigen::Index>(count), lights.lighting().bands);
+  DirectIrradiance direct{none, none};
+  if (lights.without_faces().empty() && !lights.lighting().sky) return direct;
   parallel_for(count, Stage::direct_light, observer, [&](std::size_t k) {
-    const Receiver receiver = receiver_at(k);
-    const double effort = effort_at(k);
-    Spectrum mean = Spectrum::Zero(estimator.bands), variance = Spectrum::Zero(estimator.bands);
-    for (std::size_t s = 0; s < estimator.sources.size(); ++s) {
-      const std::uint32_t key = hash({options.seed, k / options.alike, s});
-      const Estimate one = estimator.by_one(estimator.sources[s], receiver, key, effort);
-      mean += one.mean;
-      variance += one.variance;
-    }
+    const auto [mean, variance] = estimator.at(receiver_at(k), k / estimator.options.alike, effort_at(k));
     direct.irradiance.row(static_cast<Eigen::Index>(k)) = mean;
     direct.standard_error.row(static_cast<Eigen::Index>(k)) = variance.sqrt();
   });
   return direct;
 }
 
-}  // namespace
-
-void add(DirectIrradiance& direct, const DirectIrradiance& more) {
-  direct.irradiance += more.irradiance;
-  direct.standard_error = (direct.standard_error.square() + more.standard_error.square()).sqrt();
-}
-
-DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& mesh, const LightingOptions& options,
-                                   const Observer& observer) {
+// If the light varies as much over each patch, the error of all in the norm of their areas is least where each takes
+// rays in proportion to the square root of its area: Neyman's allocation (1934). Here they take a power of two.
+// Patches with the same samples take as many.
+DirectIrradiance straight_irradiance(const LightSampler& lights, const PatchMesh& mesh, const LightingOptions& options,
+                                     const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const std::span<const std::uint8_t> more = options.doublings;
   const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
-  // If the light varies as much over each patch, the error of all in the norm of their areas is least where each takes
-  // rays in proportion to the square root of its area: Neyman's allocation (1934). Here they take a power of two.
-  // Patches with the same samples take as many.
   constexpr int most_doublings = 2;
   const auto area_of = [&](std::size_t k) {
     const auto first = areas.begin() + static_cast<std::ptrdiff_t>(k - k % options.alike);
@@ -440,9 +425,42 @@ DirectIrradiance direct_irradiance(const Lighting& lighting, const PatchMesh& me
   };
   int most = most_doublings;
   for (std::size_t k = 0; k < more.size(); ++k) most = std::max(most, doublings(k));
-  const Estimator estimator = estimator_for(lighting, options, most);
   const auto effort = [&](std::size_t k) { return std::ldexp(1.0, doublings(k)); };
-  return at_receivers(estimator, mesh.size(), patch, effort, options, observer);
+  return straight_irradiance(estimator_for(lights, options, most), mesh.size(), patch, effort, observer);
+}
+
+DirectIrradiance straight_irradiance(const LightSampler& lights, std::span<const SurfacePoint> points,
+                                     const LightingOptions& options, const Observer& observer) {
+  const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
+  const auto effort = [](std::size_t) { return 1.0; };
+  return straight_irradiance(estimator_for(lights, options, 0), points.size(), point, effort, observer);
+}
+
+template <class Receivers>
+DirectIrradiance irradiance_of(const LightSampler& lights, const Receivers& receivers, const LightingOptions& options,
+                               const Observer& observer) {
+  const bool in_mirrors = lights.lighting().mirrors != nullptr;
+  if (options.only_in_mirrors && in_mirrors) return irradiance_in_mirrors(lights, receivers, options, observer);
+  DirectIrradiance direct = straight_irradiance(lights, receivers, options, observer);
+  if (in_mirrors) add(direct, irradiance_in_mirrors(lights, receivers, options, observer));
+  return direct;
+}
+
+}  // namespace
+
+void add(DirectIrradiance& direct, const DirectIrradiance& more) {
+  direct.irradiance += more.irradiance;
+  direct.standard_error = (direct.standard_error.square() + more.standard_error.square()).sqrt();
+}
+
+DirectIrradiance direct_irradiance(const LightSampler& lights, const PatchMesh& mesh, const LightingOptions& options,
+                                   const Observer& observer) {
+  return irradiance_of(lights, mesh, options, observer);
+}
+
+DirectIrradiance direct_irradiance(const LightSampler& lights, std::span<const SurfacePoint> points,
+                                   const LightingOptions& options, const Observer& observer) {
+  return irradiance_of(lights, points, options, observer);
 }
 
 Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, const Field& standard_error,
@@ -451,13 +469,6 @@ Field with_errors_around(const PatchMesh& mesh, const Eigen::VectorXd& area, con
   const Eigen::ArrayXd rays = multiples(doublings, standard_error.rows());
   const Field of_usual = standard_error.colwise() * rays.sqrt();
   return of_usual.max(means_around(mesh, area, of_usual)).colwise() / rays.sqrt();
-}
-
-DirectIrradiance direct_irradiance(const Lighting& lighting, std::span<const SurfacePoint> points,
-                                   const LightingOptions& options, const Observer& observer) {
-  const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
-  const auto effort = [](std::size_t) { return 1.0; };
-  return at_receivers(estimator_for(lighting, options, 0), points.size(), point, effort, options, observer);
 }
 
 }  // namespace patchlight

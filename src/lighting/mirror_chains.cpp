@@ -15,22 +15,6 @@
 namespace patchlight {
 namespace {
 
-std::optional<MirroredArrival> arrived(const SurfacePoint& at, const Arrival& arrival) {
-  if (!(arrival.irradiance > 0)) return {};
-  return MirroredArrival{{at.point, arrival.from, at.polygon, no_polygon}, arrival.irradiance * *arrival.colour};
-}
-
-// E G A: one point of the lamp.
-std::optional<MirroredArrival> from_lamp(const LampFace& lamp, const Point& y, const SurfacePoint& at,
-                                         const SurfacePoint& image) {
-  const Vector toward = y - image.point;
-  const double cosine = image.normal.dot(toward);
-  const double cosine_there = -lamp.normal.dot(toward);
-  if (!(cosine > 0 && cosine_there > 0)) return {};
-  const double geometry = cosine * cosine_there / (std::numbers::pi * toward.squaredNorm() * toward.squaredNorm());
-  return MirroredArrival{{at.point, y, at.polygon, lamp.polygon}, geometry * lamp.area * lamp.exitance};
-}
-
 constexpr std::size_t most_chains = 1024;
 
 // Directions of equal flux of a source: they resolve narrow sources, and points of a mirror resolve small mirrors.
@@ -47,7 +31,7 @@ double reflectance_of(const Material& material) {
 
 // A source, its flux, and directions each of which stands for the same share of it.
 struct SourceFlux {
-  const MirroredSource* source;
+  const LightSource* source;
   Spectrum flux;  // W; of the sun: onto all mirrors
   std::vector<Vector> directions;
 };
@@ -59,13 +43,13 @@ struct DirectionCell {
 
 // I dOmega in cells of directions, each evaluated at its middle. Rings around the axis become narrower towards it, by a
 // factor of 1,000 in all. Light with extent is seen from afar.
-std::vector<DirectionCell> direction_cells(const MirroredSource& source) {
+std::vector<DirectionCell> direction_cells(const LightSource& source) {
   constexpr int rings = 40;
   constexpr int cells_of_ring = 16;
-  const Ball& ball = source.extent.ball;
+  const Ball& ball = source.extent().ball;
   const double distance = ball.radius > 0 ? 100 * ball.radius : 1;
-  const Vector across = source.axis.unitOrthogonal();
-  const Vector third = source.axis.cross(across);
+  const Vector across = source.axis().unitOrthogonal();
+  const Vector third = source.axis().cross(across);
   const auto angle_of = [](double ring) {
     return std::numbers::pi * std::expm1(std::log(1000.0) * ring / rings) / 999;
   };
@@ -77,18 +61,19 @@ std::vector<DirectionCell> direction_cells(const MirroredSource& source) {
     for (int cell = 0; cell < cells_of_ring; ++cell) {
       const double turn = 2 * std::numbers::pi * (cell + 0.5) / cells_of_ring;
       const Vector toward =
-          std::cos(middle) * source.axis + std::sin(middle) * (std::cos(turn) * across + std::sin(turn) * third);
+          std::cos(middle) * source.axis() + std::sin(middle) * (std::cos(turn) * across + std::sin(turn) * third);
       const SurfacePoint at{ball.centre + distance * toward, -toward, no_polygon};
-      if (const auto arrival = source.arrival(at, at, {0.5, 0.5}))
-        cells.push_back({toward, distance * distance * solid_angle * arrival->irradiance});
+      const LightSample sample = source.sample(at, {0.5, 0.5});
+      if (sample.irradiance > 0)
+        cells.push_back({toward, distance * distance * solid_angle * sample.irradiance * *sample.color});
     }
   }
   return cells;
 }
 
-SourceFlux flux_of(const MirroredSource& source, Eigen::Index bands) {
+SourceFlux flux_of(const LightSource& source, Eigen::Index bands) {
   SourceFlux found{&source, Spectrum::Zero(bands), {}};
-  if (source.extent.direction) return found;
+  if (source.extent().direction) return found;
   const std::vector<DirectionCell> cells = direction_cells(source);
   for (const DirectionCell& cell : cells) found.flux += cell.flux;
   const double step = found.flux.mean() / directions_of_source;
@@ -245,11 +230,11 @@ Spectrum flux_by_points(const SourceFlux& light, const SourceExtent& seen, std::
     if (!(sample.solid_angle > 0)) continue;
     const SurfacePoint at{sample.point, side.normal, side.polygon};
     const SurfacePoint reflected{image * at.point, image.linear() * at.normal, side.polygon};
-    const auto arrival = light.source->arrival(at, reflected, {s, t});
-    if (!arrival) continue;
+    const LightSample arriving = light.source->sample(reflected, {s, t});
+    if (!(arriving.irradiance > 0)) continue;
     const Vector way = eye - at.point;
     const double area_per_angle = way.squaredNorm() * way.norm() / side.normal.dot(way);
-    sum += sample.solid_angle * sample.weight * area_per_angle * arrival->irradiance;
+    sum += sample.solid_angle * sample.weight * area_per_angle * arriving.irradiance * *arriving.color;
   }
   return sum / static_cast<double>(points.size());
 }
@@ -287,7 +272,7 @@ struct QueuedChain {
 
 class ChainSearch {
  public:
-  ChainSearch(const Scene& scene, std::span<const MirroredSource> sources);
+  ChainSearch(const Scene& scene, std::span<const LightSource> sources);
   MirrorChains run();
 
  private:
@@ -311,7 +296,7 @@ class ChainSearch {
   MirrorChains found_;
 };
 
-ChainSearch::ChainSearch(const Scene& scene, std::span<const MirroredSource> sources)
+ChainSearch::ChainSearch(const Scene& scene, std::span<const LightSource> sources)
     : tolerance_(tolerance_in(scene)), sides_(mirror_sides(scene)) {
   const Eigen::Index bands = number_of_bands(scene);
   for (const MirrorSide& side : sides_) {
@@ -320,9 +305,9 @@ ChainSearch::ChainSearch(const Scene& scene, std::span<const MirroredSource> sou
     most_reflectance_ = std::max(most_reflectance_, side.reflectance);
   }
   left_.assign(sides_.size(), Spectrum::Zero(bands));
-  for (const MirroredSource& source : sources) {
+  for (const LightSource& source : sources) {
     sources_.push_back(flux_of(source, bands));
-    found_.ranked.push_back(source.id);
+    found_.ranked.push_back(source.id());
   }
   std::sort(found_.ranked.begin(), found_.ranked.end());
 }
@@ -338,7 +323,7 @@ QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number
   longer.first = number;
   for (const Beam& beam : before.beams) {
     const SourceFlux& light = sources_[beam.source];
-    const SourceExtent seen = image_of(light.source->extent, before.chain.image);
+    const SourceExtent seen = image_of(light.source->extent(), before.chain.image);
     if (!is_lit_from(side, seen)) continue;
     std::vector<Point> section = hulls_[number];
     if (!beam.section.empty()) section = lit_part(std::move(section), before.chain.mirrors.front(), beam.section, seen);
@@ -407,13 +392,13 @@ MirrorChains ChainSearch::run() {
     for (const Beam& beam : single.back().beams) {
       reflected_ += sides_[k].reflectance * beam.flux.mean();
       SourceFlux& light = sources_[beam.source];
-      if (light.source->extent.direction) light.flux += beam.flux;
+      if (light.source->extent().direction) light.flux += beam.flux;
     }
   }
   for (QueuedChain& candidate : single) add(std::move(candidate));
   while (!queue_.empty()) {
     QueuedChain next = std::move(queue_.extract(queue_.begin()).value());
-    for (const Beam& beam : next.beams) next.chain.sources.push_back(sources_[beam.source].source->id);
+    for (const Beam& beam : next.beams) next.chain.sources.push_back(sources_[beam.source].source->id());
     std::sort(next.chain.sources.begin(), next.chain.sources.end());
     found_.chains.push_back(next.chain);
     found_.chains.back().beyond = light_beyond(next.chain.mirrors.size(), add_longer(next));
@@ -430,44 +415,7 @@ MirrorChains ChainSearch::run() {
 
 }  // namespace
 
-Ball ball_around(std::span<const Point> points) {
-  Ball ball;
-  for (const Point& point : points) ball.centre += point / static_cast<double>(points.size());
-  for (const Point& point : points) ball.radius = std::max(ball.radius, (point - ball.centre).norm());
-  return ball;
-}
-
-std::vector<MirroredSource> mirrored_sources(const Lighting& lighting, std::span<const LampFace> lamps) {
-  std::vector<MirroredSource> sources;
-  const auto luminaires = static_cast<std::uint32_t>(lighting.luminaires.size());
-  for (std::uint32_t k = 0; k < luminaires; ++k) {
-    const Luminaire& luminaire = lighting.luminaires[k];
-    const auto* const sphere = std::get_if<SphericalLamp>(&luminaire.light);
-    sources.push_back({k,
-                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d& uv) {
-                         return arrived(at, from_luminaire(luminaire, lighting.up, image, uv));
-                       },
-                       {{}, {luminaire.position, sphere != nullptr ? sphere->radius : 0}},
-                       luminaire.aim});
-  }
-  if (lighting.sun)
-    sources.push_back({luminaires,
-                       [&](const SurfacePoint& at, const SurfacePoint& image, const Eigen::Vector2d&) {
-                         return arrived(at, from_sun(lighting, image));
-                       },
-                       {lighting.sun->direction, {}}});
-  for (const LampFace& lamp : lamps)
-    sources.push_back({luminaires + 1 + lamp.polygon,
-                       [&lamp, points = QuadPoints(lamp.corners)](const SurfacePoint& at, const SurfacePoint& image,
-                                                                  const Eigen::Vector2d& uv) {
-                         return from_lamp(lamp, points.at(uv.x(), uv.y()), at, image);
-                       },
-                       {{}, ball_around(lamp.corners)},
-                       lamp.normal});
-  return sources;
-}
-
-MirrorChains mirror_chains(const Scene& scene, std::span<const MirroredSource> sources) {
+MirrorChains mirror_chains(const Scene& scene, std::span<const LightSource> sources) {
   return ChainSearch(scene, sources).run();
 }
 

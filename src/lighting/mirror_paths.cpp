@@ -13,6 +13,38 @@
 #include <utility>
 
 namespace patchlight {
+namespace {
+
+// Up to 256 faces of the strongest emitting polygons, each polygon with both sides, because a chain does not
+// distinguish them. Their chains are ranked; other faces are sampled by all chains.
+std::vector<EmitterFace> ranked_faces(const Scene& scene) {
+  struct Emitter {
+    std::vector<EmitterFace> faces;
+    double flux = 0;
+  };
+  std::vector<Emitter> emitters;
+  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
+    if (!is_lamp(scene, p)) continue;
+    Emitter emitter;
+    for (const Side side : {Side::front, Side::back}) {
+      if (!emits(scene, p, side)) continue;
+      for (const EmitterFace& face : emitter_faces(scene, p, side)) {
+        emitter.faces.push_back(face);
+        emitter.flux += face.area * face.exitance.mean();
+      }
+    }
+    emitters.push_back(std::move(emitter));
+  }
+  std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
+  std::vector<EmitterFace> ranked;
+  for (const Emitter& emitter : emitters) {
+    if (ranked.size() + emitter.faces.size() > 256) break;  // the cost grows with faces times mirrors
+    ranked.insert(ranked.end(), emitter.faces.begin(), emitter.faces.end());
+  }
+  return ranked;
+}
+
+}  // namespace
 
 // The places at the mirrors of a chain where light on its way from one end of a segment to the other is reflected.
 struct MirrorPaths::Way {
@@ -202,5 +234,11 @@ std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<con
   }
   return rays;
 }
+
+Mirrors::Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting)
+    : paths(scene, lighting.paths.optics(),
+            mirror_chains(scene, LightSampler(lighting, ranked_faces(scene)).sources())),
+      aim(scene, *lighting.paths.optics()),
+      occluder(tracing.all_faces()) {}
 
 }  // namespace patchlight

@@ -24,7 +24,7 @@ class MirrorPaths {
   const MirrorChains& found() const { return chains_; }
   const std::vector<MirrorChain>& chains() const { return chains_.chains; }
 
-  /// False where no light of a source, by its MirroredSource::id, gets through a chain.
+  /// False where no light of a source, by its LightSource::id(), gets through a chain.
   bool carries(const MirrorChain& chain, std::uint32_t source) const;
 
   /// Irradiance at a place if the light that is not followed left each mirror diffusely and nothing were in the way.
@@ -79,6 +79,16 @@ class SpecularAim {
 
   bool has_all_faces_ = true;
   std::vector<Opening> targets_;  // the clear faces and mirrors, the largest first
+};
+
+/// The mirrors and clear faces of a scene, as virtual sources and as targets of rays.
+struct Mirrors {
+  MirrorPaths paths;
+  SpecularAim aim;
+  const Occluder& occluder;  ///< of all faces
+
+  /// Chains of the lighting's luminaires and sun, and of the strongest emitting polygons.
+  Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting);
 };
 
 }  // namespace patchlight

@@ -4,8 +4,7 @@
 
 #include "base/sampling.h"
 #include "base/vectors.h"
-#include "lighting/lighting.h"
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/light_source.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
 #include "transport/ray_rows.h"
@@ -27,30 +26,30 @@ namespace {
 Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
 
 // The factors of lamps, the patches of a side each, by the clear faces of the run.
-LampFactors factors_of_lamps(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
-                             const PatchMesh& mesh) {
-  std::vector<LampSide> sides;
+EmitterFactors factors_of_emitters(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
+                                   const PatchMesh& mesh) {
+  std::vector<EmitterSide> sides;
   for (const PatchRange& lamp : lamps) sides.push_back({mesh.polygon[lamp.begin], mesh.side[lamp.begin]});
-  return lamp_factors(run.scene, mesh, run.world->between_patches(), sides,
-                      {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
+  return emitter_factors(run.scene, mesh, run.world->between_patches(), sides,
+                         {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
 }
 
 // The factors of the separate lamps, without rows.
-RayExchange traced_lamps(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
+RayExchange traced_emitters(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
   RayExchange found;
-  for (const LampSide& lamp : select_emitters(run.scene, mesh, problem, max_emitter_pieces(run.world->tracing())))
+  for (const EmitterSide& lamp : select_emitters(run.scene, mesh, problem, max_emitter_pieces(run.world->tracing())))
     found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
-  found.lamp_factors = factors_of_lamps(found.lamps, run, plan, mesh);
+  found.emitter_factors = factors_of_emitters(found.lamps, run, plan, mesh);
   return found;
 }
 
 // Lamps that are bright now, but were neither separate nor bright when the rows were traced: rays would miss most of
 // their light.
-std::vector<PatchRange> new_lamps(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                  const RayExchange& known) {
+std::vector<PatchRange> new_emitters(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                     const RayExchange& known) {
   std::vector<PatchRange> lamps;
   std::size_t pieces = 0;
-  for (const LampSide& lamp : select_emitters(run.scene, mesh, problem, std::numeric_limits<std::size_t>::max())) {
+  for (const EmitterSide& lamp : select_emitters(run.scene, mesh, problem, std::numeric_limits<std::size_t>::max())) {
     const PatchRange patches = mesh.patches_on(lamp.polygon, lamp.side);
     const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
     const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
@@ -66,23 +65,23 @@ std::vector<PatchRange> new_lamps(const Run& run, const PatchMesh& mesh, const R
 }
 
 // Another lamp, whose factors are columns of their own.
-LampValues joined(const LampValues& some, const LampValues& more) {
-  LampValues all(more.rows(), some.cols() + more.cols());
+EmitterValues joined(const EmitterValues& some, const EmitterValues& more) {
+  EmitterValues all(more.rows(), some.cols() + more.cols());
   all << some, more;
   return all;
 }
 
 // With the factors of lamps that are bright, and were dark when the rows were traced; of all lamps where there are
 // clear faces or mirrors, which may have other colors now.
-RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
-                       const RadiosityProblem& problem) {
-  const std::vector<PatchRange> lamps = new_lamps(run, mesh, problem, known);
+RayExchange with_emitters(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
+                          const RadiosityProblem& problem) {
+  const std::vector<PatchRange> lamps = new_emitters(run, mesh, problem, known);
   known.lamps.insert(known.lamps.end(), lamps.begin(), lamps.end());
-  LampFactors& factors = known.lamp_factors;
+  EmitterFactors& factors = known.emitter_factors;
   if (run.world->tracing().has_specular_surfaces() || !known.specular_kinds.empty()) {
-    factors = factors_of_lamps(known.lamps, run, plan, mesh);
+    factors = factors_of_emitters(known.lamps, run, plan, mesh);
   } else if (!lamps.empty()) {
-    const LampFactors more = factors_of_lamps(lamps, run, plan, mesh);
+    const EmitterFactors more = factors_of_emitters(lamps, run, plan, mesh);
     for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
     factors.standard_error = joined(factors.standard_error, more.standard_error);
   }
@@ -91,17 +90,17 @@ RayExchange with_lamps(RayExchange known, const Run& run, const Plan& plan, cons
 
 // The irradiance by separate lamps over mirrors and clear faces, which their factors do not include; empty if
 // reflections are not followed.
-DirectIrradiance lamps_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
-                                  const std::vector<PatchRange>& lamps) {
+DirectIrradiance emitters_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
+                                     const std::vector<PatchRange>& lamps) {
   if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
   const Lighting& lighting = run.world->lighting_by_polygons();
   if (!lighting.mirrors) return {};
-  std::vector<LampFace> faces;
+  std::vector<EmitterFace> faces;
   for (const PatchRange& patches : lamps) {
-    const auto of_lamp = lamp_faces(run.scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
+    const auto of_lamp = emitter_faces(run.scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
     faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
   }
-  return mirrored_irradiance(lighting, faces, mesh, options, run.observer);
+  return direct_irradiance({lighting, std::move(faces)}, mesh, options, run.observer);
 }
 
 // Half as many rays towards bright patches as over the hemisphere, in packets of both halves. In meshes with many
@@ -124,7 +123,7 @@ int times_for_all(const Known& known) {
 }
 
 // H = F_lamps E_lamps for factors of one value per patch and lamp.
-Field irradiance_by(const LampValues& factors, const Field& exitance) {
+Field irradiance_by(const EmitterValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
 }
 
@@ -140,9 +139,9 @@ RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patche
     exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(begin);
     std::fill(light.is_apart.begin() + begin, light.is_apart.begin() + end, 1);
   }
-  const LampFactors& factors = exchange.lamp_factors;
-  for (std::size_t half = 0; half < 2; ++half) light.by_lamps[half] = irradiance_by(factors.halves[half], exitance);
-  light.lamp_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
+  const EmitterFactors& factors = exchange.emitter_factors;
+  for (std::size_t half = 0; half < 2; ++half) light.by_emitters[half] = irradiance_by(factors.halves[half], exitance);
+  light.emitter_standard_error = irradiance_by(factors.standard_error.square(), exitance.square()).sqrt();
   return light;
 }
 
@@ -197,10 +196,10 @@ Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
 
 }  // namespace
 
-std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                      std::size_t max_pieces) {
+std::vector<EmitterSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                         std::size_t max_pieces) {
   struct Emitter {
-    LampSide side;
+    EmitterSide side;
     double flux = 0;
   };
   const Eigen::VectorXd exitance = summed_over_bands(problem.exitance);
@@ -214,7 +213,7 @@ std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh,
     }
   }
   std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
-  std::vector<LampSide> selected;
+  std::vector<EmitterSide> selected;
   std::size_t pieces = 0;
   for (const Emitter& emitter : emitters) {
     const std::size_t more = piece_count(scene, emitter.side);
@@ -237,7 +236,7 @@ Field emitted_in_rows(const RayLight& light) {
 }
 
 Field direct_of(const RayLight& light) {
-  Field direct = 0.5 * (light.by_lamps[0] + light.by_lamps[1]);
+  Field direct = 0.5 * (light.by_emitters[0] + light.by_emitters[1]);
   for (const Field* more : {&light.lit.problem.direct_irradiance, &light.in_mirrors.irradiance})
     if (more->size() > 0) direct += *more;
   return direct;
@@ -249,14 +248,14 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
   Plan to_lamps = plan;
   to_lamps.assembly.rays *= times_for_all(known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
-  RayExchange exchange = is_known ? with_lamps(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_lamps(run, to_lamps, mesh, lit.problem);
+  RayExchange exchange = is_known ? with_emitters(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
+                                  : traced_emitters(run, to_lamps, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   // Its error counts with the rows.
   LightingOptions over_mirrors = lighting_options(plan, mesh);
   over_mirrors.seed = seed_on(known, over_mirrors.seed);
   over_mirrors.doublings = known.more_rays.of_rows;
-  light.in_mirrors = lamps_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
+  light.in_mirrors = emitters_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light, known);
     if (run.world->tracing().has_specular_surfaces())
@@ -277,7 +276,7 @@ ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen:
                            const Plan& plan, const PatchMesh& mesh) {
   // 1. Light straight from lamps, also through clear faces.
   ExchangeAndLight found{all.exchange, {}};
-  found.exchange.lamp_factors = factors_of_lamps(all.exchange.lamps, part, plan, mesh);
+  found.exchange.emitter_factors = factors_of_emitters(all.exchange.lamps, part, plan, mesh);
 
   // 2. Other light is known of each band.
   const RayLight& light = all.light;

@@ -3,7 +3,7 @@
 #include "lighting/direct_irradiance.h"
 #include "pipeline/problem_of.h"
 #include "pipeline/run.h"
-#include "transport/lamp_factors.h"
+#include "transport/emitter_factors.h"
 #include "transport/ray_transport.h"
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@ inline constexpr double explicit_emitter_ratio = 4;
 
 /// Selects the sides of polygons that are sampled explicitly, strongest first, up to a number of triangles and convex
 /// quadrilaterals. Rays find the light of the others.
-std::vector<LampSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
-                                      std::size_t max_pieces);
+std::vector<EmitterSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
+                                         std::size_t max_pieces);
 
 /// The number of pieces beside rows of rays, and at sensors: 16, or 64 with mirrors, in which rays rarely find lamps.
 std::size_t max_emitter_pieces(const Tracing& tracing);
@@ -30,9 +30,9 @@ std::size_t max_emitter_pieces(const Tracing& tracing);
 /// bright source, and smoothing would blur its shadows.
 struct RayLight {
   LitProblem lit;                      ///< the problem of lit_problem(), with the full exitance
-  std::vector<std::uint8_t> is_apart;  ///< per patch: 1 if its exitance counts in by_lamps, not in rows
-  std::array<Field, 2> by_lamps;       ///< direct irradiance by separate lamps, by both halves of the samples, W/m^2
-  Field lamp_standard_error;           ///< of its mean, W/m^2
+  std::vector<std::uint8_t> is_apart;  ///< per patch: 1 if its exitance counts in by_emitters, not in rows
+  std::array<Field, 2> by_emitters;    ///< direct irradiance by separate lamps, by both halves of the samples, W/m^2
+  Field emitter_standard_error;        ///< of its mean, W/m^2
   /// Irradiance by the same lamps over mirrors and clear faces; empty where there are none.
   DirectIrradiance in_mirrors;
   std::vector<float> distance;          ///< TracedRows::distance

@@ -83,10 +83,11 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
   const auto is_exposed = lost.covered.array() < 1;
   const Eigen::ArrayXd exposed = is_exposed.select(1 - lost.covered.array(), 1.0);
-  for (Field* field : {&light.by_lamps[0], &light.by_lamps[1], &light.lamp_standard_error}) field->colwise() /= exposed;
+  for (Field* field : {&light.by_emitters[0], &light.by_emitters[1], &light.emitter_standard_error})
+    field->colwise() /= exposed;
   const Eigen::ArrayXd relative = exposure_errors(lost);
-  const Field by_exposure = (0.5 * (light.by_lamps[0] + light.by_lamps[1])).colwise() * relative;
-  light.lamp_standard_error = (light.lamp_standard_error.square() + by_exposure.square()).sqrt();
+  const Field by_exposure = (0.5 * (light.by_emitters[0] + light.by_emitters[1])).colwise() * relative;
+  light.emitter_standard_error = (light.emitter_standard_error.square() + by_exposure.square()).sqrt();
   Field& of_direct = light.lit.direct_standard_error;
   if (of_direct.size() > 0) {
     const Field off = light.lit.problem.direct_irradiance.colwise() * relative;

@@ -4,7 +4,6 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "light/texture.h"
-#include "lighting/mirrored_irradiance.h"
 #include "mesh/nested_mesh.h"
 #include "plan/goal.h"
 #include "plan/planned_scene.h"
@@ -45,11 +44,7 @@ Simulation of_other_parts(Simulation simulation, const Scene& scene, bool whole)
 DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, const PatchMesh& mesh,
                                               LightingOptions options) {
   options.areas = important_areas(mesh, plan.goal.get());
-  const auto trace = [&](const Lighting& lighting) {
-    DirectIrradiance direct = direct_irradiance(lighting, mesh, options, run.observer);
-    if (lighting.mirrors) add(direct, mirrored_irradiance(lighting, {}, mesh, options, run.observer));
-    return direct;
-  };
+  const auto trace = [&](const Lighting& lighting) { return direct_irradiance(lighting, mesh, options, run.observer); };
   if (plan.lamp_colour.size() == 0) return trace(run.world->lighting());
   // All light has the lamps' color, and nothing changes it on the way: all bands follow from one.
   const DirectIrradiance found = trace(run.world->lighting_in_one_band());
@@ -197,7 +192,7 @@ LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostSh
 Field rough_direct_irradiance(const Run& run, const Plan& plan, const PatchMesh& quarters, std::uint64_t seed,
                               int rays) {
   const int to_lights = std::clamp(rays, 2, 8);
-  const LightingOptions few{.lamp_samples = to_lights,
+  const LightingOptions few{.luminaire_samples = to_lights,
                             .sun_samples = to_lights,
                             .mirrored_samples = std::clamp(rays / 2, 2, 8),
                             .sky_samples = std::clamp(4 * rays, 16, 64),

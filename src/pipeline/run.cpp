@@ -1,6 +1,6 @@
 #include "pipeline/run.h"
 
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/mirror_paths.h"
 #include "plan/notes.h"
 
 #include <set>

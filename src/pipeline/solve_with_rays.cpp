@@ -65,8 +65,8 @@ Field mean_of(const std::array<Field, 2>& halves) { return 0.5 * (halves[0] + ha
 
 // The light of a RayLight and its errors, some of it without a value.
 std::array<const Field*, 7> fields_of(const RayLight& light) {
-  return {&light.lit.problem.exitance,     &light.by_lamps[0],           &light.by_lamps[1],
-          &light.lamp_standard_error,      &light.in_mirrors.irradiance, &light.in_mirrors.standard_error,
+  return {&light.lit.problem.exitance,     &light.by_emitters[0],        &light.by_emitters[1],
+          &light.emitter_standard_error,   &light.in_mirrors.irradiance, &light.in_mirrors.standard_error,
           &light.lit.direct_standard_error};
 }
 
@@ -102,17 +102,10 @@ Field squares_in(const SolvedBands& bands, const Field& error) { return reduced(
 // B = E + rho o H for light that is reflected once. H is the irradiance by separate lamps plus the light of other
 // emitters in the rows.
 ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
-  ConservingSolution once;
-  once.gathered = gathered_by_halves(transport, problem.exitance);
-  Solution& solution = once.solution;
-  solution.irradiance = mean_of(once.gathered) + problem.direct_irradiance;
-  solution.direct_irradiance = solution.irradiance;
-  solution.radiosity = radiosity_from(problem, solution.irradiance);
-  solution.error = Field::Zero(solution.radiosity.rows(), solution.radiosity.cols());
-  solution.patch_bound = 0;
-  solution.converged = true;
+  std::array<Field, 2> gathered = gathered_by_halves(transport, problem.exitance);
+  Solution solution = patchlight::reflected_once(problem, mean_of(gathered) + problem.direct_irradiance);
   solution.history = {{.work = 1}};
-  return once;
+  return {std::move(solution), {}, std::move(gathered)};
 }
 
 // The square of the bias of smoothing over the variance that it leaves, of all patches together, per band: (S - H) of
@@ -362,7 +355,7 @@ NeededLight needed_light(const RayLight& light, const SolverOptions& options) {
   const SolvedBands& bands = needed.bands;
   needed.problem = {of_bands(all.scattering, bands.solved), reduced(emitted_in_rows(light), bands), all.area,
                     reduced(direct_of(light), bands)};
-  needed.of_lamps = squares_in(bands, light.lamp_standard_error);
+  needed.of_lamps = squares_in(bands, light.emitter_standard_error);
   for (const Field* error : {&light.lit.direct_standard_error, &light.in_mirrors.standard_error}) {
     if (error->size() == 0) continue;
     if (needed.of_others.size() == 0) needed.of_others = Field::Zero(error->rows(), needed.of_lamps.cols());

@@ -12,10 +12,6 @@
 
 namespace patchlight {
 
-/// Direct irradiance by emitting patches, F E, from their rows alone, W/m^2. \throws Canceled.
-Field irradiance_by_lamps(const RowTransport& transport, const FieldView& exitance, Stage stage,
-                          const Observer& observer);
-
 /// Returns `solve`, or without interreflection a function for direct light only: H = F E + H_direct and B = E + rho o
 /// H.
 SolveWith solver_as_planned(SolveWith solve, const Plan& plan);

@@ -89,7 +89,7 @@ Field direct_difference(const Run& run, const Simulation& simulation, const Asse
   AssemblyOptions again = simulation.plan.assembly;
   again.seed = hash({simulation.plan.assembly.seed, stream::repeated_run});
   const auto transport = on_demand_transport(simulation.mesh, run.world->between_patches(), again, area);
-  const Field second = irradiance_by_lamps(*transport, exitance, Stage::error_bars, run.observer);
+  const Field second = irradiance_by_emitters(*transport, exitance, Stage::error_bars, run.observer);
   return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
 }
 

@@ -213,7 +213,7 @@ FinalGather::FinalGather(const SolvedLight& solved, const SmoothField& radiance,
       lens_(lens),
       options_(options),
       gather_(solved),
-      luminaires_(seen_luminaires(solved.lights.lighting.luminaires, solved.lights.lighting.up)),
+      luminaires_(seen_luminaires(solved.lights.lighting().luminaires, solved.lights.lighting().up)),
       records_(solved.luminous_weights),
       tiles_(tiles_of(options.width, options.height)) {
   const Eigen::Index count = static_cast<Eigen::Index>(options.width) * options.height;

@@ -3,7 +3,7 @@
 #include "base/sampling.h"
 #include "base/streams.h"
 #include "light/texture.h"
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/direct_irradiance.h"
 #include "render/camera.h"
 #include "visibility/walk.h"
 
@@ -242,7 +242,7 @@ bool is_plain(const SolvedLight& light, PatchIndex patch) {
   return light.occluder.optics().at(light.mesh.polygon[patch]) == nullptr;
 }
 
-const SurfaceOptics& optics_of(const SolvedLight& light) { return *light.lights.lighting.paths.optics(); }
+const SurfaceOptics& optics_of(const SolvedLight& light) { return *light.lights.lighting().paths.optics(); }
 
 std::optional<PatchIndex> behind(const SolvedLight& light, PatchIndex patch) {
   if (light.other_side.empty() || light.other_side[patch] == patch) return std::nullopt;
@@ -277,12 +277,12 @@ SkyAim GatheredLight::aim_at(PatchIndex patch) const {
       },
       mesh.side[patch],
       {corners.points.begin(), corners.points.begin() + corners.count}};
-  return aim_at_few(sky_aim(solved_.lights.lighting, receiver, AimFor::points), solved_.lights.lighting.openings);
+  return aim_at_few(sky_aim(solved_.lights.lighting(), receiver, AimFor::points), solved_.lights.lighting().openings);
 }
 
 LitPoint GatheredLight::lit_point(const PatchPoint& at, std::uint32_t sample, std::uint32_t seed, SkyAims& aims) const {
   const SkyAim* aim = nullptr;
-  if (solved_.lights.lighting.sky) {
+  if (solved_.lights.lighting().sky) {
     const auto [place, is_new] = aims.try_emplace(at.patch);
     if (is_new) place->second = aim_at(at.patch);
     aim = &place->second;
@@ -330,7 +330,7 @@ Field GatheredLight::sums_of_rays(const std::vector<Stop>& stops, const Field& a
 // True if the patch is wider than the path is long, and its light follows from its irradiance alone.
 bool GatheredLight::is_near(const Stop& stop) const {
   return stop.distance * stop.distance < solved_.mesh.area[stop.patch] && !stop.is_specular &&
-         !behind(solved_, stop.patch) && !solved_.lights.lighting.mirrors &&
+         !behind(solved_, stop.patch) && !solved_.lights.lighting().mirrors &&
          (solved_.exitance.row(stop.patch) == 0).all();
 }
 
@@ -389,10 +389,10 @@ IrradianceRecord GatheredLight::record_at(const PatchPoint& at, std::uint64_t ke
 
   IrradianceRecord record{at.point, normal, 0, found.irradiance, found.gradient, 0};
   Spectrum variance = found.variance;
-  if (solved_.lights.lighting.mirrors) {
+  if (solved_.lights.lighting().mirrors) {
     const SurfacePoint point{at.point, normal, mesh.polygon[at.patch]};
-    const DirectIrradiance mirrored = mirrored_irradiance(solved_.lights.lighting, solved_.lights.lamps,
-                                                          std::span(&point, 1), {.mirrored_samples = 2, .seed = seed});
+    const DirectIrradiance mirrored = direct_irradiance(solved_.lights, std::span(&point, 1),
+                                                        {.mirrored_samples = 2, .seed = seed, .only_in_mirrors = true});
     record.irradiance += mirrored.irradiance.row(0);
     variance += mirrored.standard_error.row(0).square();
   }

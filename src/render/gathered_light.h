@@ -121,7 +121,7 @@ class IrradianceCache {
 struct SolvedLight {
   const PatchMesh& mesh;
   const Occluder& occluder;  ///< of all faces
-  Lights lights;
+  LightSampler lights;
   Field exitance;   ///< W/m^2
   Field reflected;  ///< radiosity without exitance, W/m^2; 0 where nothing is reflected twice
   Field reflectance;

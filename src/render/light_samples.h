@@ -3,7 +3,7 @@
 #include "patchlight/base/field.h"
 #include "patchlight/base/geometry.h"
 
-#include "lighting/lighting.h"
+#include "lighting/light_source.h"
 #include "lighting/sky_irradiance.h"
 
 #include <array>
@@ -37,12 +37,6 @@ class SphericalTriangle {
   double solid_angle_ = 0;
 };
 
-/// The lights that shine straight on points.
-struct Lights {
-  std::vector<LampFace> lamps;  ///< emitting faces
-  const Lighting& lighting;     ///< luminaires, sun and sky
-};
-
 /// A point that gets light, and the origin of its random numbers.
 struct LitPoint {
   SurfacePoint at;
@@ -52,9 +46,9 @@ struct LitPoint {
 };
 
 /// One estimate of the irradiance of each point (row) by lights that shine on it straight or through clear faces,
-/// W/m^2 per band; its mean over all samples is the irradiance. `rays` go to lamps, 2 or more, and as many to
-/// luminaires, which choose among these, or to each one if there are few; one to the sun, and `rays` to the sky.
-Field light_samples(const Lights& lights, std::span<const LitPoint> points, std::uint32_t rays);
+/// W/m^2 per band; its mean over all samples is the irradiance. About `rays` rays, 2 or more, go to the sources that
+/// LightSampler::choose() selects, and `rays` to the sky.
+Field light_samples(const LightSampler& lights, std::span<const LitPoint> points, std::uint32_t rays);
 
 /// An aim at its most probable openings, as each point looks at all triangles of these; others are left to rays over
 /// the hemisphere.

@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
-#include "lighting/lighting.h"
+#include "lighting/light_source.h"
 #include "visibility/walk.h"
 
 #include <algorithm>
@@ -82,10 +82,10 @@ SeenLuminaire seen_opening(const Luminaire& luminaire, const std::shared_ptr<con
   const Vector half = web->opening.cwiseMax(least) / 2;
   const auto radiance = [luminaire, web, frame, up](const Vector& direction) -> Spectrum {
     // E at 1 m is I
-    const Arrival arrival =
-        from_luminaire(luminaire, up, {luminaire.position + direction, -direction}, Eigen::Vector2d::Zero());
+    const LightSample arrival =
+        sample_luminaire(luminaire, up, {luminaire.position + direction, -direction}, Eigen::Vector2d::Zero());
     const double area = projected_opening(*web, frame, direction);
-    return *arrival.colour * (area > 0 ? arrival.irradiance / area : 0);
+    return *arrival.color * (area > 0 ? arrival.irradiance / area : 0);
   };
   return {luminaire.position, half.norm(), web->shape, half.cwiseInverse().asDiagonal() * axes.transpose(), radiance};
 }

@@ -77,13 +77,13 @@ class RaysWithPockets : public TransportOperator {
   PatchIndex size() const override { return rays_.size(); }
   Field apply(const FieldView& radiosity) const override { return rays_.apply(radiosity); }
   bool is_reciprocal() const override { return false; }
-
-  const RayTransport& rays() const { return rays_; }
-  /// The pockets for patches with these reflectances, the highest of each in any band. Null if there are none, or if a
-  /// patch reflects more than in the search. Then light may be reflected more often than the pockets state.
-  const Pockets* pockets(const Eigen::ArrayXd& reflectance) const {
+  /// Null as well if a patch reflects more than in the search: light may be reflected more often than the pockets
+  /// state.
+  const Pockets* pockets(const Eigen::ArrayXd& reflectance) const override {
     return (reflectance <= reflectance_.array()).all() ? pockets_.get() : nullptr;
   }
+
+  const RayTransport& rays() const { return rays_; }
 
  private:
   RayTransport rays_;

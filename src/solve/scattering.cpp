@@ -63,6 +63,17 @@ Field source_radiosity(const RadiosityProblem& problem) {
   return radiosity_from(problem, problem.direct_irradiance);
 }
 
+Solution reflected_once(const RadiosityProblem& problem, Field irradiance) {
+  Solution solution;
+  solution.radiosity = radiosity_from(problem, irradiance);
+  solution.error = Field::Zero(irradiance.rows(), irradiance.cols());
+  solution.direct_irradiance = irradiance;
+  solution.irradiance = std::move(irradiance);
+  solution.patch_bound = 0;
+  solution.converged = true;
+  return solution;
+}
+
 Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradiance) {
   return scaled(scattered_share(scattering), irradiance);
 }

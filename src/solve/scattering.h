@@ -13,6 +13,9 @@ inline auto reflect_at(const Scattering& scattering, Eigen::Index patch, const F
   return scattering.reflectance.row(patch) * irradiance;
 }
 
+/// The solution for light that is reflected once: B = E + R H, exact for a given H of all light.
+Solution reflected_once(const RadiosityProblem& problem, Field irradiance);
+
 /// R H of an irradiance that is the same everywhere, one value per band.
 Field reflect_even(const Scattering& scattering, const Eigen::ArrayXd& irradiance);
 

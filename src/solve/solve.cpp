@@ -170,7 +170,7 @@ Solution solution_by(Solver solver, Iterations iterations, const RowTransport* r
 
 // The transport with single rows, if it has them.
 const RowTransport* rows_of(const TransportOperator& transport, Solver solver) {
-  const auto* const rows = dynamic_cast<const RowTransport*>(&transport);
+  const auto* const rows = transport.rows();
   if (rows == nullptr && takes_rows(solver)) {
     throw InputError(name_of(solver),
                      "takes single rows of the form factors, which cannot be had as they are kept here; expected a "
@@ -196,19 +196,6 @@ void require_diagonal(const Scattering& scattering, Solver solver) {
                    "gmres, bicgstab or jacobi");
 }
 
-// F E, where there are rows from those of the lamps alone.
-Field from_lamps(const TransportOperator& transport, const RowTransport* rows, const Field& exitance) {
-  if ((exitance == 0).all()) return Field::Zero(exitance.rows(), exitance.cols());
-  if (rows == nullptr) return transport.apply(exitance);
-  Field irradiance = Field::Zero(exitance.rows(), exitance.cols());
-  for (Eigen::Index i = 0; i < exitance.rows(); ++i) {
-    if (!(exitance.row(i) > 0).any()) continue;
-    const auto index = static_cast<PatchIndex>(i);
-    irradiance += rows->shoot({index, index + 1}, exitance.row(i));
-  }
-  return irradiance;
-}
-
 // In the order of Solver.
 constexpr std::array solver_names = {"jacobi",      "gauss-seidel", "sor",          "symmetric-gauss-seidel",
                                      "chebyshev",   "progressive",  "overshooting", "cg",
@@ -226,13 +213,6 @@ Solution lamps_alone(const TransportOperator& transport, const RadiosityProblem&
   return solution;
 }
 
-// The pockets of a transport, where they are known.
-const Pockets* pockets_in(const TransportOperator& transport, const Scattering& scattering) {
-  const auto* const rays = dynamic_cast<const RaysWithPockets*>(&transport);
-  const bool may_be_known = rays != nullptr && scattering.is_diagonal();
-  return may_be_known ? rays->pockets(scattering.reflectance.rowwise().maxCoeff()) : nullptr;
-}
-
 // The light that patches of a pocket first send to each other arrives as direct irradiance.
 Solution solved_around(const TransportOperator& transport, const Pockets& pockets, bool closed_are_dark,
                        RadiosityProblem problem, const SolverOptions& options, const Observer& observer) {
@@ -240,7 +220,7 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   const double accuracy = std::max(1e-9, 0.01 * tolerance_of(options));
   const PocketTransport around(transport, pockets, problem.scattering, closed_are_dark, accuracy);
   const Field within = around.irradiance_within(problem.exitance);
-  const Field by_lamps = transport.apply(problem.exitance);
+  const Field by_emitters = transport.apply(problem.exitance);
   if (problem.direct_irradiance.size() == 0) problem.direct_irradiance = Field::Zero(within.rows(), within.cols());
   problem.direct_irradiance += within;
   problem.exitance = plus_reflected(std::move(problem.exitance), problem.scattering, within);
@@ -255,7 +235,7 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
   }
   Solution solution = solution_by(options.solver, Iterations(around, problem, options, of_all), nullptr);
   solution.irradiance += within;
-  solution.direct_irradiance = by_lamps;
+  solution.direct_irradiance = by_emitters;
   // A pocket error above the tolerance invalidates all bounds.
   if (around.farthest_off() > tolerance_of(options)) {
     solution.error.resize(0, 0);
@@ -268,7 +248,9 @@ Solution solved_around(const TransportOperator& transport, const Pockets& pocket
 // are known, these patches are all closed. Shooting solvers do not check this, as they do not use the whole transport.
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem, const SolverOptions& options,
                      const Observer& observer) {
-  const Pockets* const pockets = pockets_in(transport, problem.scattering);
+  const Scattering& scattering = problem.scattering;
+  const Pockets* const pockets =
+      scattering.is_diagonal() ? transport.pockets(scattering.reflectance.rowwise().maxCoeff()) : nullptr;
   const bool closed_are_dark = pockets != nullptr && !(chosen_rows(problem.exitance, pockets->closed) > 0).any();
   const bool known = !options.largest_row_sum || std::isfinite(*options.largest_row_sum);
   std::string trapped = known && !closed_are_dark ? trapped_light(transport, problem) : std::string();
@@ -326,7 +308,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
   assert(problem.scattering.reflectance.rows() == problem.exitance.rows() &&
          problem.scattering.reflectance.cols() == problem.exitance.cols());
 
-  const RowTransport* const rows = rows_of(transport, options.solver);
+  rows_of(transport, options.solver);
   require_reciprocity(transport, options.solver);
   require_diagonal(problem.scattering, options.solver);
 
@@ -351,7 +333,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
   }
   if (problem.direct_irradiance.size() == 0) return solution;
   solution.irradiance += problem.direct_irradiance;
-  solution.direct_irradiance = from_lamps(transport, rows, problem.exitance) + problem.direct_irradiance;
+  solution.direct_irradiance = irradiance_by_emitters(transport, problem.exitance) + problem.direct_irradiance;
   return solution;
 }
 

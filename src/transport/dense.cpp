@@ -1,3 +1,4 @@
+#include "patchlight/base/error.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "base/parallel.h"
@@ -13,6 +14,38 @@
 #include <vector>
 
 namespace patchlight {
+
+namespace {
+
+// Ranges of at most 64 patches that emit.
+std::vector<PatchRange> emitter_ranges(const FieldView& exitance) {
+  std::vector<PatchRange> ranges;
+  for (Eigen::Index row = 0; row < exitance.rows(); ++row) {
+    if (!(exitance.row(row) > 0).any()) continue;
+    const auto i = static_cast<PatchIndex>(row);
+    if (!ranges.empty() && ranges.back().end == i && i - ranges.back().begin < 64) {
+      ++ranges.back().end;
+    } else {
+      ranges.push_back({i, i + 1});
+    }
+  }
+  return ranges;
+}
+
+}  // namespace
+
+const Pockets* TransportOperator::pockets(const Eigen::ArrayXd&) const { return nullptr; }
+
+Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage,
+                             const Observer& observer) {
+  if (transport.rows() == nullptr && (exitance > 0).any()) return transport.apply(exitance);
+  Field H = Field::Zero(exitance.rows(), exitance.cols());
+  for (const PatchRange& range : emitter_ranges(exitance)) {
+    if (observer && !observer({.stage = stage})) throw Canceled();
+    H += transport.rows()->shoot(range, exitance.middleRows(range.begin, range.end - range.begin));
+  }
+  return H;
+}
 
 // Gathers for one block after the other.
 Sweep RowTransport::sweep(Sweep from, const Relax& there, const Relax& back) const {

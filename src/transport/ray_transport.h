@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/transport/transport_operator.h"
 
-#include "transport/lamp_factors.h"
+#include "transport/emitter_factors.h"
 #include "transport/ray_rows.h"
 
 #include <array>
@@ -21,8 +21,8 @@ namespace patchlight {
 /// more noise.
 struct RayExchange {
   TracedRows rows;
-  std::vector<PatchRange> lamps;  ///< separate lamps: the patches of one side each, with equal emission
-  LampFactors lamp_factors;       ///< per patch and lamp
+  std::vector<PatchRange> lamps;   ///< separate lamps: the patches of one side each, with equal emission
+  EmitterFactors emitter_factors;  ///< per patch and lamp
   /// SurfaceOptics::kinds() of the polygons at the time of tracing; empty if none is specular.
   std::vector<std::array<double, 2>> specular_kinds = {};
 };

@@ -5,7 +5,7 @@
 
 #include "base/tolerances.h"
 #include "light/photometry.h"
-#include "lighting/lighting.h"
+#include "lighting/light_source.h"
 #include "pipeline/world.h"
 #include "plan/planned_scene.h"
 #include "render/camera.h"
@@ -73,10 +73,10 @@ std::vector<GlareSource> luminaire_glare(const Scene& scene, const Occluder& fac
     if (!light || !(way.dot(forward) > 0)) continue;
     const Vector towards = way / distance;
     const double area = projected_opening(*light->web, {luminaire.aim, luminaire.zero_plane}, towards);
-    const Arrival arrival = from_luminaire(luminaire, scene.up, {eye, towards}, Eigen::Vector2d::Zero());
+    const LightSample arrival = sample_luminaire(luminaire, scene.up, {eye, towards}, Eigen::Vector2d::Zero());
     if (!(area > 0 && arrival.irradiance > 0)) continue;
     // I = E d^2 of a plane that faces the luminaire
-    const Spectrum intensity = arrival.irradiance * (distance * distance) * *arrival.colour;
+    const Spectrum intensity = arrival.irradiance * (distance * distance) * *arrival.color;
     const double average = luminance(Spectrum(intensity / area), bands);
     const double solid_angle = area / (distance * distance) / (parts * parts);
     const PartsSeen ways = ways_to_parts(luminaire, *light->web, eye);

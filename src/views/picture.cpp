@@ -6,7 +6,6 @@
 #include "base/sampling.h"
 #include "light/photometry.h"
 #include "lighting/lighting.h"
-#include "lighting/mirrored_irradiance.h"
 #include "lighting/sky_openings.h"
 #include "pipeline/world.h"
 #include "plan/choose_storage.h"

@@ -3,8 +3,9 @@
 
 #include "gather/doubtful_sensors.h"
 #include "gather/sensor_places.h"
+#include "lighting/direct_irradiance.h"
 #include "lighting/light_paths.h"
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/mirror_paths.h"
 #include "pipeline/exchange_and_light.h"
 #include "pipeline/radiosity_errors.h"
 #include "pipeline/world.h"
@@ -53,12 +54,6 @@ Field at_places(const Field& values, std::span<const SensorPlace> places) {
   return all;
 }
 
-// Adds an irradiance with the standard error by its own rays.
-void add(GatheredIrradiance& gathered, const Field& irradiance, const Field& standard_error) {
-  gathered.irradiance += irradiance;
-  gathered.errors.rays = (gathered.errors.rays.square() + standard_error.square()).sqrt();
-}
-
 std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
   std::vector<SurfacePoint> points;
   for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
@@ -66,14 +61,14 @@ std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
 }
 
 // The lamps whose mirrored light is computed over chains of mirrors.
-std::vector<LampSide> lamps_over_chains(const Simulation& simulation) {
+std::vector<EmitterSide> emitters_in_mirrors(const Simulation& simulation) {
   const World& world = *simulation.world;
   if (!world.sensor_lighting().mirrors) return {};
   return select_emitters(world.sensor_scene(), simulation.mesh, simulation.problem,
                          max_emitter_pieces(world.tracing()));
 }
 
-Field without_exitance(Field sent, const Simulation& simulation, std::span<const LampSide> lamps) {
+Field without_exitance(Field sent, const Simulation& simulation, std::span<const EmitterSide> lamps) {
   for (const auto& [polygon, side] : lamps) {
     const auto [begin, end] = simulation.mesh.patches_on(polygon, side);
     sent.middleRows(begin, end - begin) -= simulation.problem.exitance.middleRows(begin, end - begin);
@@ -81,16 +76,13 @@ Field without_exitance(Field sent, const Simulation& simulation, std::span<const
   return sent;
 }
 
-// The light of these lamps, luminaires, sun and sky over chains of mirrors.
-DirectIrradiance over_chains(const Simulation& simulation, std::span<const LampSide> lamps,
-                             const std::vector<Sensor>& sensors, const Observer& observer) {
-  std::vector<LampFace> all;
+std::vector<EmitterFace> faces_of(const Scene& scene, std::span<const EmitterSide> lamps) {
+  std::vector<EmitterFace> all;
   for (const auto& [polygon, side] : lamps) {
-    const auto faces = lamp_faces(simulation.world->sensor_scene(), polygon, side);
+    const auto faces = emitter_faces(scene, polygon, side);
     all.insert(all.end(), faces.begin(), faces.end());
   }
-  return mirrored_irradiance(simulation.world->sensor_lighting(), all, points_of(sensors),
-                             {.seed = simulation.plan.assembly.seed}, observer);
+  return all;
 }
 
 // The irradiance by patches, luminaires, sun and sky, directly and in mirrors.
@@ -102,7 +94,7 @@ GatheredIrradiance irradiance_at(const std::vector<Sensor>& sensors, const Simul
       simulates(simulation.plan, Effect::interreflection) ? simulation.solution.radiosity : simulation.problem.exitance;
   const std::uint64_t seed = simulation.plan.assembly.seed;
   const Lighting& lighting = world.sensor_lighting();
-  const std::vector<LampSide> lamps = lamps_over_chains(simulation);
+  const std::vector<EmitterSide> lamps = emitters_in_mirrors(simulation);
   const Field mirrored = without_exitance(sent, simulation, lamps);
   GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, world.all_faces(), sensors,
                                                   {.seed = seed,
@@ -114,13 +106,11 @@ GatheredIrradiance irradiance_at(const std::vector<Sensor>& sensors, const Simul
   // Light that is still under way, by how much is not known.
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
   if (!is_known) gathered.errors.solver.setConstant(std::nan(""));
-  if (has_point_or_daylight(world.sensor_scene())) {
-    const auto direct = direct_irradiance(lighting, points_of(sensors), {.seed = seed}, observer);
-    add(gathered, direct.irradiance, direct.standard_error);
-  }
-  if (lighting.mirrors) {
-    const auto direct = over_chains(simulation, lamps, sensors, observer);
-    add(gathered, direct.irradiance, direct.standard_error);
+  if (has_point_or_daylight(world.sensor_scene()) || lighting.mirrors) {
+    const auto [irradiance, standard_error] = direct_irradiance({lighting, faces_of(world.sensor_scene(), lamps)},
+                                                                points_of(sensors), {.seed = seed}, observer);
+    gathered.irradiance += irradiance;
+    gathered.errors.rays = (gathered.errors.rays.square() + standard_error.square()).sqrt();
   }
   return gathered;
 }

@@ -21,28 +21,20 @@ namespace {
 
 // At most 256 faces that emit much more than most do, the brightest first: pictures send shadow rays to these. The
 // light of others is gathered like that of patches which reflect.
-struct PictureLamps {
-  std::vector<LampFace> faces;
+struct PictureEmitters {
+  std::vector<EmitterFace> faces;
   Field exitance;  // of their patches, 0 of all others
 };
 
-// Seen from its front, a face's corners go round counter-clockwise.
-LampFace seen_from_front(LampFace face, Side side) {
-  if (side == Side::front) return face;
-  const auto [a, b, c, d] = face.corners;
-  face.corners = c == d ? std::array<Point, 4>{c, b, a, a} : std::array<Point, 4>{d, c, b, a};
-  return face;
-}
-
-PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) {
+PictureEmitters emitters_of_picture(const Scene& scene, const Simulation& simulation) {
   const PatchMesh& mesh = simulation.mesh;
   const Field& exitance = simulation.problem.exitance;
-  PictureLamps lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
+  PictureEmitters lamps{{}, Field::Zero(exitance.rows(), exitance.cols())};
   for (const auto& [polygon, side] : select_emitters(scene, mesh, simulation.problem, 256)) {
     const auto [begin, end] = mesh.patches_on(polygon, side);
-    for (LampFace& face : lamp_faces(scene, polygon, side)) {
+    for (EmitterFace& face : emitter_faces(scene, polygon, side)) {
       face.exitance = exitance.row(begin);
-      lamps.faces.push_back(seen_from_front(std::move(face), side));
+      lamps.faces.push_back(std::move(face));
     }
     lamps.exitance.middleRows(begin, end - begin) = exitance.middleRows(begin, end - begin);
   }
@@ -54,7 +46,7 @@ PictureLamps lamps_of_picture(const Scene& scene, const Simulation& simulation) 
 SolvedLight solved_light(const Simulation& simulation) {
   const Scene& scene = simulation.world->sensor_scene();
   const RadiosityProblem& problem = simulation.problem;
-  PictureLamps lamps = lamps_of_picture(scene, simulation);
+  PictureEmitters lamps = emitters_of_picture(scene, simulation);
   const Field sent = simulates(simulation.plan, Effect::interreflection)
                          ? Field(std::numbers::pi * display_radiance(simulation))
                          : problem.exitance;
@@ -64,7 +56,7 @@ SolvedLight solved_light(const Simulation& simulation) {
     weights[static_cast<Eigen::Index>(band)] = luminous_efficacy * bands[band].luminous_weight;
   return {.mesh = simulation.mesh,
           .occluder = simulation.world->all_faces(),
-          .lights = {std::move(lamps.faces), simulation.world->sensor_lighting()},
+          .lights = {simulation.world->sensor_lighting(), std::move(lamps.faces)},
           .exitance = problem.exitance,
           .reflected = sent - lamps.exitance,
           .reflectance = problem.scattering.reflectance,

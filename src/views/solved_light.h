@@ -4,7 +4,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/simulate.h"
 
-#include "lighting/lighting.h"
+#include "lighting/light_source.h"
 #include "render/gathered_light.h"
 
 #include <functional>

@@ -1,11 +1,15 @@
 #pragma once
 
 #include "patchlight/base/field.h"
+#include "patchlight/base/progress.h"
 
 #include <Eigen/Core>
 #include <functional>
 
 namespace patchlight {
+
+class RowTransport;
+struct Pockets;
 
 /// The transport of light between all patches: H = F B. It depends on geometry only and is the same for all bands and
 /// materials.
@@ -17,7 +21,16 @@ class TransportOperator {
   virtual Field apply(const FieldView& radiosity) const = 0;
   /// True when A_i F_ij = A_j F_ji up to rounding. Solvers that require symmetry reject other transports.
   virtual bool is_reciprocal() const { return true; }
+  /// Access to single rows; null if the transport has none.
+  virtual const RowTransport* rows() const { return nullptr; }
+  /// Blocks of patches that keep light among themselves, given the highest reflectance of each patch in any band. Null
+  /// if there are none, or none are known. solve() treats them separately.
+  virtual const Pockets* pockets(const Eigen::ArrayXd& reflectance) const;
 };
+
+/// F E by the rows of emitting patches alone, or by one application if the transport has no rows. \throws Canceled.
+Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage = Stage::solve,
+                             const Observer& observer = {});
 
 /// A block of patches during a sweep: its current radiosities, the irradiance by the current radiosities of all patches
 /// (one row per patch of the block), and the form factors within the block (rows: from, columns: to).
@@ -41,6 +54,7 @@ struct Sweep {
 /// A transport with access to single rows.
 class RowTransport : public TransportOperator {
  public:
+  const RowTransport* rows() const final { return this; }
   /// Irradiance of the receivers only: rows [begin, end) of F B.
   virtual Field gather(PatchRange receivers, const FieldView& radiosity) const = 0;
   /// Irradiance of all patches by the sources only; `radiosity` has one row per source.

@@ -65,7 +65,7 @@ TEST(DirectIrradiance, OfASphereThatTheHorizonCutsDiffersByTheVectorIrradiance) 
   const double distance = 2;
   scene.luminaires = {sphere(Point(distance * std::sqrt(0.99), 0, distance * 0.1), 1, 7)};
   LightingOptions options;
-  options.lamp_samples = 4096;
+  options.luminaire_samples = 4096;
   const double above = at(scene, {Point(0, 0, 0), Vector::UnitZ()}, options).irradiance(0, 0);
   const double below = at(scene, {Point(0, 0, 0), -Vector::UnitZ()}, options).irradiance(0, 0);
   EXPECT_GT(below, 0);
@@ -96,7 +96,7 @@ Penumbra penumbra() {
     double by_solid_angle = 0;
     double by_area = 0;
     for (const auto& [u, v, s, t] : scrambled_sobol(samples, hash({trial, 5}))) {
-      const Arrival arrival = from_luminaire(lamp, scene.up, {Point(0, 0, 0), Vector::UnitZ()}, {u, v});
+      const LightSample arrival = sample_luminaire(lamp, scene.up, {Point(0, 0, 0), Vector::UnitZ()}, {u, v});
       by_solid_angle += arrival.irradiance * arriving(arrival.from) / samples;
       // Uniform over the sphere: E = M / pi x area x the mean of cos cos' / d^2 over the sphere's points that face the
       // receiver.
@@ -226,7 +226,7 @@ TEST(DirectIrradiance, OfALuminaireCloseToTheCeilingIsAllOfItsFlux) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     for (const int samples : {4, 64}) {
       const DirectIrradiance direct =
-          direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.lamp_samples = samples, .seed = seed});
+          direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, {.luminaire_samples = samples, .seed = seed});
       EXPECT_NEAR(flux_onto(mesh, direct), 4 * pi, 1e-9);
       // The root of the rounding error of a variance.
       EXPECT_LT((direct.standard_error / direct.irradiance).maxCoeff(), 1e-6);
@@ -243,8 +243,8 @@ TEST(DirectIrradiance, OfALuminaireCloseToACoveredPatchIsOfThePartOverWhichNothi
   const KeptSides sides = kept_sides(scene, Sides::front);
   const PatchMesh mesh = tessellate(scene, sides, 10);
   ASSERT_EQ(mesh.size(), 7U);
-  const DirectIrradiance direct =
-      direct_irradiance(lighting_of(scene, Tracing(scene, find_coverings(scene, sides))), mesh, {.lamp_samples = 1024});
+  const DirectIrradiance direct = direct_irradiance(lighting_of(scene, Tracing(scene, find_coverings(scene, sides))),
+                                                    mesh, {.luminaire_samples = 1024});
   double flux = flux_onto(mesh, direct);
   for (PatchIndex i = 0; i < 6; ++i) {
     if (mesh.normal[i].z() < -0.5) flux -= 2 * direct.irradiance(i, 0);
@@ -414,7 +414,7 @@ TEST(DirectIrradiance, OfABallIsTheSameBesideWhatHidesNothing) {
   const PatchMesh mesh = fronts(scene, 2);
   const PatchMesh beside = fronts(with_board, 2);
   for (const int samples : {4, 16, 20, 64}) {
-    const LightingOptions options{.lamp_samples = samples};
+    const LightingOptions options{.luminaire_samples = samples};
     const DirectIrradiance alone = direct_irradiance(lighting_of(scene, Tracing(scene)), mesh, options);
     const DirectIrradiance both = direct_irradiance(lighting_of(with_board, Tracing(with_board)), beside, options);
     const auto patches = static_cast<Eigen::Index>(mesh.size());
@@ -432,11 +432,11 @@ TEST(DirectIrradiance, OfQuartersWithTheSameSamplesDiffersByLittleNoise) {
   scene.luminaires = {sphere(Point(0, 0, 3), 0.2, 7)};
   const PatchMesh quarters = refine(fronts(scene, 100));
   const Lighting lighting = lighting_of(scene, Tracing(scene));
-  const Field exact = direct_irradiance(lighting, quarters, {.lamp_samples = 4096}).irradiance.bottomRows(4);
+  const Field exact = direct_irradiance(lighting, quarters, {.luminaire_samples = 4096}).irradiance.bottomRows(4);
   const auto squares_of_errors = [&](std::uint32_t alike) {
     double sum = 0;
     for (std::uint64_t seed = 1; seed <= 64; ++seed) {
-      const LightingOptions options{.lamp_samples = 4, .seed = seed, .alike = alike};
+      const LightingOptions options{.luminaire_samples = 4, .seed = seed, .alike = alike};
       const Field error = direct_irradiance(lighting, quarters, options).irradiance.bottomRows(4) - exact;
       sum += (error - error.mean()).square().sum();
     }

@@ -71,7 +71,7 @@ double mean_chi_square(const Runs& runs) {
   return sum / number;
 }
 
-constexpr LightingOptions many{.lamp_samples = 1 << 11, .sky_samples = 1 << 13, .seed = 99};
+constexpr LightingOptions many{.luminaire_samples = 1 << 11, .sky_samples = 1 << 13, .seed = 99};
 
 // The same with a plate that transmits everything.
 Scene with_clear_plate(Scene scene) {
@@ -99,7 +99,7 @@ Runs on_patches(const Scene& scene, double max_edge = 0.25) {
   return with_reference(std::move(seeds), on(scene, many).irradiance, on(with_clear_plate(scene), many).irradiance);
 }
 
-Runs at_points(const Scene& scene, const Eigen::Isometry3d& motion, int lamp_samples = 64) {
+Runs at_points(const Scene& scene, const Eigen::Isometry3d& motion, int luminaire_samples = 64) {
   std::vector<SurfacePoint> points;
   for (int k = 0; k < 30; ++k)
     points.push_back({motion * Point(-0.4 + 0.04 * k, 0.7, 0.001), motion.linear() * Vector::UnitZ(), no_polygon});
@@ -108,9 +108,9 @@ Runs at_points(const Scene& scene, const Eigen::Isometry3d& motion, int lamp_sam
   };
   std::vector<DirectIrradiance> seeds;
   for (std::uint64_t seed = 1; seed <= number_of_seeds; ++seed)
-    seeds.push_back(at(scene, {.lamp_samples = lamp_samples, .seed = seed}));
+    seeds.push_back(at(scene, {.luminaire_samples = luminaire_samples, .seed = seed}));
   LightingOptions reference = many;
-  reference.lamp_samples = 32 * lamp_samples;
+  reference.luminaire_samples = 32 * luminaire_samples;
   return with_reference(std::move(seeds), at(scene, reference).irradiance,
                         at(with_clear_plate(scene), reference).irradiance);
 }

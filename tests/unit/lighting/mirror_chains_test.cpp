@@ -1,6 +1,7 @@
 #include "lighting/mirror_chains.h"
 
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/direct_irradiance.h"
+#include "lighting/mirror_paths.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
   EXPECT_TRUE(lighting.mirrors->paths.found().is_cut);
   EXPECT_EQ(lighting.mirrors->paths.chains().size(), 1024U);
   const SurfacePoint at{Point(1, 0, -0.5), Vector::UnitZ(), no_polygon};
-  const DirectIrradiance found = mirrored_irradiance(lighting, {}, std::span(&at, 1), {});
+  const DirectIrradiance found = direct_irradiance(lighting, std::span(&at, 1), {.only_in_mirrors = true});
   // Images at x0 + 2 k gap and -x0 + 2 k gap, by |2 k| and |2 k - 1| mirrors, within reach of the facets.
   double exact = 0;
   for (int k = -6; k <= 6; ++k) {

@@ -26,8 +26,8 @@ RayLight lamps_and_sky() {
       {Field::Constant(patches, 3, 0.5)}, exitance, Eigen::VectorXd::Ones(patches), dimmer_and_dark(1, 0.25)};
   light.lit.direct_standard_error = dimmer_and_dark(0.1, 0.25);
   light.is_apart = {1, 0, 0, 0};
-  light.by_lamps = {dimmer_and_dark(2, 0.25), dimmer_and_dark(4, 0.25)};
-  light.lamp_standard_error = dimmer_and_dark(0.2, 0.25);
+  light.by_emitters = {dimmer_and_dark(2, 0.25), dimmer_and_dark(4, 0.25)};
+  light.emitter_standard_error = dimmer_and_dark(0.2, 0.25);
   return light;
 }
 
@@ -55,7 +55,7 @@ TEST(NeededLight, GivesTheOtherBands) {
   const RayLight light = lamps_and_sky();
   const NeededLight needed = needed_light(light, {});
   const Field all = expanded(needed.problem.direct_irradiance, needed.bands);
-  const Field expected = 0.5 * (light.by_lamps[0] + light.by_lamps[1]) + light.lit.problem.direct_irradiance;
+  const Field expected = 0.5 * (light.by_emitters[0] + light.by_emitters[1]) + light.lit.problem.direct_irradiance;
   ASSERT_EQ(all.cols(), 3);
   EXPECT_LT((all - expected).abs().maxCoeff(), 1e-14);
   EXPECT_TRUE((all.col(2) == 0).all()) << "the dark band";
@@ -82,8 +82,8 @@ TEST(NeededLight, IsThatOfBandsWhoseLightDoesNotFollow) {
 TEST(NeededLight, IsThatOfAllBandsWhereOneFieldDoesNotFollow) {
   for (const auto& field :
        {+[](RayLight& light) { return &light.lit.direct_standard_error; },
-        +[](RayLight& light) { return &light.by_lamps[0]; }, +[](RayLight& light) { return &light.by_lamps[1]; },
-        +[](RayLight& light) { return &light.lamp_standard_error; },
+        +[](RayLight& light) { return &light.by_emitters[0]; }, +[](RayLight& light) { return &light.by_emitters[1]; },
+        +[](RayLight& light) { return &light.emitter_standard_error; },
         +[](RayLight& light) { return &light.in_mirrors.irradiance; },
         +[](RayLight& light) { return &light.in_mirrors.standard_error; }}) {
     RayLight light = lamps_and_sky();
@@ -106,7 +106,7 @@ TEST(NeededLight, IsThatOfAllBandsWhereEmittedAndDirectLightFollowTogetherAlone)
 // An error in a band without light is not an error times 0.
 TEST(NeededLight, IsThatOfAllBandsWhereADarkOneHasAnError) {
   RayLight light = lamps_and_sky();
-  light.lamp_standard_error(2, 2) = 0.1;
+  light.emitter_standard_error(2, 2) = 0.1;
   expect_all_bands(light);
 }
 

@@ -39,7 +39,7 @@ Mean mean_at_origin(const Scene& scene, std::uint32_t rays) {
   const Tracing tracing(scene, find_coverings(scene, kept_sides(scene, Sides::both)), Occluder::Blockers::all,
                         Reflections::kept);
   const Lighting lighting = lighting_of(scene, tracing);
-  const Lights lights{lamp_faces(scene, 1, Side::front), lighting};
+  const LightSampler lights(lighting, emitter_faces(scene, 1, Side::front));
   Mean mean;
   double squares = 0;
   std::vector<double> all;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace patchlight::choice_of_lamps_test {
+namespace patchlight::emitter_choice_test {
 namespace {
 
 using namespace test;
@@ -29,12 +29,12 @@ Lamps all_of_a_box() {
 
 // at() inverts the distribution. For n evenly spaced numbers of [0, 1), n q to within one choose a lamp of probability
 // q. The remainder of the number rises from 0 to 1 within each lamp.
-void expect_chosen_as_told(const ChoiceOfLamps& choice, const std::vector<PatchIndex>& lamps) {
+void expect_chosen_as_told(const EmitterChoice& choice, const std::vector<PatchIndex>& lamps) {
   constexpr int count = 100'000;
   std::vector<int> chosen(lamps.size(), 0);
-  ChoiceOfLamps::Chosen before{no_patch, 0, 0};
+  EmitterChoice::Chosen before{no_patch, 0, 0};
   for (int k = 0; k < count; ++k) {
-    const ChoiceOfLamps::Chosen now = choice.at((k + 0.5) / count);
+    const EmitterChoice::Chosen now = choice.at((k + 0.5) / count);
     ++chosen[now.lamp];
     EXPECT_DOUBLE_EQ(now.probability, choice.probability_of(now.lamp));
     EXPECT_TRUE(now.u >= 0 && now.u <= 1) << now.u;
@@ -51,15 +51,15 @@ void expect_chosen_as_told(const ChoiceOfLamps& choice, const std::vector<PatchI
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-TEST(ChoiceOfLamps, FollowsItsProbabilities) {
+TEST(EmitterChoice, FollowsItsProbabilities) {
   const Lamps lamps = all_of_a_box();
   expect_chosen_as_told(choice_by_flux(lamps.mesh, lamps.all, lamps.exitance), lamps.all);
-  expect_chosen_as_told(choice_of_lamps(lamps.mesh, 0, lamps.all, lamps.exitance), lamps.all);
+  expect_chosen_as_told(emitter_choice_for(lamps.mesh, 0, lamps.all, lamps.exitance), lamps.all);
 }
 
-TEST(ChoiceOfLamps, ByFluxGoesWithAreaTimesExitance) {
+TEST(EmitterChoice, ByFluxGoesWithAreaTimesExitance) {
   const Lamps lamps = all_of_a_box();
-  const ChoiceOfLamps choice = choice_by_flux(lamps.mesh, lamps.all, lamps.exitance);
+  const EmitterChoice choice = choice_by_flux(lamps.mesh, lamps.all, lamps.exitance);
   const PatchIndex last = lamps.mesh.size() - 1;
   ASSERT_GT(std::abs(lamps.mesh.area[last] / lamps.mesh.area[0] - 1), 0.01) << "else the areas are not looked at";
   const double flux_first = lamps.mesh.area[0] * lamps.exitance(0);
@@ -70,22 +70,22 @@ TEST(ChoiceOfLamps, ByFluxGoesWithAreaTimesExitance) {
 // A floor and a ceiling of 1 x 1 m, 2 m apart, and a wall of 1 x 2 m between them, with one patch each. The squared
 // distance of middles plus the area is 4 + 1 for the ceiling and 0.25 + 1 + 2 for the wall. Both cosines of the ceiling
 // are 2 / sqrt(5). Those of the wall are 1 / sqrt(3.25) and 0.5 / sqrt(3.25).
-TEST(ChoiceOfLamps, GoesWithWhatIsSentWithNothingInTheWay) {
+TEST(EmitterChoice, GoesWithWhatIsSentWithNothingInTheWay) {
   Scene scene = empty_scene({grey(0.5)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
   scene = with_quad(std::move(scene), {Point(0, 0, 2), Point(0, 1, 2), Point(1, 1, 2), Point(1, 0, 2)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(0, 1, 0), Point(0, 1, 2), Point(0, 0, 2)});
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 10);
   ASSERT_EQ(mesh.size(), 3U);
-  const ChoiceOfLamps choice = choice_of_lamps(mesh, 0, {1, 2}, Field::Ones(3, 1));
+  const EmitterChoice choice = emitter_choice_for(mesh, 0, {1, 2}, Field::Ones(3, 1));
   const double of_ceiling = 1 * (4.0 / 5) / 5;
   const double of_wall = 2 * (1 * 0.5 / 3.25) / 3.25;
   EXPECT_NEAR(choice.probability_of(1), of_ceiling / (of_ceiling + of_wall), 1e-12);
 }
 
-TEST(ChoiceOfLamps, OtherPatchesAreNeverChosen) {
+TEST(EmitterChoice, OtherPatchesAreNeverChosen) {
   const Lamps lamps = all_of_a_box();
-  const ChoiceOfLamps choice = choice_by_flux(lamps.mesh, {3, 7}, lamps.exitance);
+  const EmitterChoice choice = choice_by_flux(lamps.mesh, {3, 7}, lamps.exitance);
   EXPECT_EQ(choice.probability_of(2), 0);
   EXPECT_EQ(choice.probability_of(5), 0);
   EXPECT_EQ(choice.probability_of(8), 0);
@@ -94,4 +94,4 @@ TEST(ChoiceOfLamps, OtherPatchesAreNeverChosen) {
 }
 
 }  // namespace
-}  // namespace patchlight::choice_of_lamps_test
+}  // namespace patchlight::emitter_choice_test

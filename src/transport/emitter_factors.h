@@ -17,26 +17,26 @@ namespace patchlight {
 class Occluder;
 
 /// A side of a polygon with uniform emission.
-struct LampSide {
+struct EmitterSide {
   PolygonIndex polygon = no_polygon;
   Side side = Side::front;
 };
 
 /// The number of triangles and convex quadrilaterals in a side.
-std::size_t piece_count(const Scene& scene, const LampSide& lamp);
+std::size_t piece_count(const Scene& scene, const EmitterSide& lamp);
 
 /// One value per patch (row) and lamp (column).
-using LampValues = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using EmitterValues = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Form factors from patches to whole lamps, as means over the whole patch, by two independent halves of shadow rays.
-struct LampFactors {
-  std::array<LampValues, 2> halves;
-  LampValues standard_error;  ///< of the mean of both
+struct EmitterFactors {
+  std::array<EmitterValues, 2> halves;
+  EmitterValues standard_error;  ///< of the mean of both
   std::uint64_t shadow_rays = 0;
 };
 
 /// How lamps are sampled.
-struct LampSampling {
+struct EmitterSampling {
   int rays = 64;
   std::uint64_t seed = 1;
 };
@@ -46,7 +46,8 @@ struct LampSampling {
 /// `rays` per pair, 16 at least, and four times as many if those of the **other** half disagree. The number does not
 /// depend on its own rays, so the estimate is unbiased. Standard errors are pooled over pairs with the same visible
 /// share. The same bits for any number of threads. \throws Canceled.
-LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                         std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer = {});
+EmitterFactors emitter_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
+                               std::span<const EmitterSide> lamps, const EmitterSampling& sampling,
+                               const Observer& observer = {});
 
 }  // namespace patchlight

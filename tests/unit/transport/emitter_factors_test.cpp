@@ -1,4 +1,4 @@
-#include "transport/lamp_factors.h"
+#include "transport/emitter_factors.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
@@ -11,7 +11,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace patchlight::lamp_factors_test {
+namespace patchlight::emitter_factors_test {
 namespace {
 
 using namespace test;
@@ -34,18 +34,18 @@ Scene under_bars(int bars, double slit) {
   return scene;
 }
 
-LampFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex lamp, std::uint64_t seed) {
+EmitterFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex lamp, std::uint64_t seed) {
   const Occluder occluder(scene);
-  const LampSide side{lamp, Side::front};
-  return lamp_factors(scene, mesh, occluder, {&side, 1}, {.seed = seed});
+  const EmitterSide side{lamp, Side::front};
+  return emitter_factors(scene, mesh, occluder, {&side, 1}, {.seed = seed});
 }
 
 // With nothing in between, both halves are the closed form. The reference is the sum of exchange areas with the lamp's
 // patches, which are accurate to 1e-3.
-TEST(LampFactors, AreTheClosedFormWhereNothingIsBetween) {
+TEST(EmitterFactors, AreTheClosedFormWhereNothingIsBetween) {
   const Scene scene = under_bars(0, 0);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.2);
-  const LampFactors factors = factors_of(scene, mesh, 1, 1);
+  const EmitterFactors factors = factors_of(scene, mesh, 1, 1);
   const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
   const PatchRange floor = mesh.patches_on(0, Side::front);
   const PatchRange lamp = mesh.patches_on(1, Side::front);
@@ -61,7 +61,7 @@ TEST(LampFactors, AreTheClosedFormWhereNothingIsBetween) {
 
 // Agreement of probes is not sufficient: through slits that leave 2 % of the lamp visible, 16 rays mostly meet only
 // bars. The mean over patches, seeds and halves is compared with that of 4,096 rays for every pair.
-TEST(LampFactors, HaveTheRightMeanBehindSlits) {
+TEST(EmitterFactors, HaveTheRightMeanBehindSlits) {
   const Scene scene = under_bars(30, 0.002);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.26);
   const Occluder occluder(scene);
@@ -92,7 +92,7 @@ TEST(LampFactors, HaveTheRightMeanBehindSlits) {
   double sum = 0;
   double squares = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const LampFactors factors = factors_of(scene, mesh, 1, static_cast<std::uint64_t>(seed));
+    const EmitterFactors factors = factors_of(scene, mesh, 1, static_cast<std::uint64_t>(seed));
     double of_seed = 0;
     for (PatchIndex i = floor.begin; i < floor.end; ++i)
       of_seed += 0.5 * static_cast<double>(factors.halves[0](i, 0) + factors.halves[1](i, 0));
@@ -107,10 +107,10 @@ TEST(LampFactors, HaveTheRightMeanBehindSlits) {
 }
 
 // Half the difference of the halves and the stated error have the same mean square.
-TEST(LampFactors, StateTheErrorsThatTheirHalvesShow) {
+TEST(EmitterFactors, StateTheErrorsThatTheirHalvesShow) {
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.15);
-  const LampFactors factors = factors_of(scene, mesh, lamp_of_furnished_room, 1);
+  const EmitterFactors factors = factors_of(scene, mesh, lamp_of_furnished_room, 1);
   const double shown = (0.5 * (factors.halves[0] - factors.halves[1])).square().sum();
   const double stated = factors.standard_error.square().sum();
   EXPECT_GT(shown, 0);
@@ -118,22 +118,22 @@ TEST(LampFactors, StateTheErrorsThatTheirHalvesShow) {
   EXPECT_GT(factors.shadow_rays, 16U * mesh.size());
 }
 
-TEST(LampFactors, HaveTheSameBitsForAnyNumberOfThreads) {
+TEST(EmitterFactors, HaveTheSameBitsForAnyNumberOfThreads) {
   const Scene scene = furnished_room(0.5);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.3);
   const auto found = [&](int threads) {
     const ThreadLimit limit(threads);
     return factors_of(scene, mesh, lamp_of_furnished_room, 1);
   };
-  const LampFactors one = found(1);
-  const LampFactors two = found(2);
+  const EmitterFactors one = found(1);
+  const EmitterFactors two = found(2);
   EXPECT_TRUE((one.halves[0] == two.halves[0]).all());
   EXPECT_TRUE((one.halves[1] == two.halves[1]).all());
   EXPECT_TRUE((one.standard_error == two.standard_error).all());
 }
 
 // A lamp other than a convex quadrilateral is the sum of its triangles: an L of three squares.
-TEST(LampFactors, OfAnyPolygonAreThoseOfItsParts) {
+TEST(EmitterFactors, OfAnyPolygonAreThoseOfItsParts) {
   const auto floor = [] {
     return with_quad(empty_scene({grey(0.5), grey(0, 10)}),
                      {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
@@ -144,9 +144,9 @@ TEST(LampFactors, OfAnyPolygonAreThoseOfItsParts) {
   parts = with_quad(std::move(parts), {Point(1, 0, 2), Point(1, 1, 2), Point(2, 1, 2), Point(2, 0, 2)}, 1);
   const PatchMesh mesh = tessellate(whole, kept_sides(whole, Sides::front), 0.5);
   const PatchMesh of_parts = tessellate(parts, kept_sides(parts, Sides::front), 0.5);
-  const LampFactors a = factors_of(whole, mesh, 1, 1);
-  const LampFactors b = factors_of(parts, of_parts, 1, 1);
-  const LampFactors c = factors_of(parts, of_parts, 2, 1);
+  const EmitterFactors a = factors_of(whole, mesh, 1, 1);
+  const EmitterFactors b = factors_of(parts, of_parts, 1, 1);
+  const EmitterFactors c = factors_of(parts, of_parts, 2, 1);
   EXPECT_EQ(piece_count(whole, {1, Side::front}), 4U);
   for (PatchIndex i = 0; i < 16; ++i)
     EXPECT_NEAR(a.halves[0](i, 0), b.halves[0](i, 0) + c.halves[0](i, 0),
@@ -154,4 +154,4 @@ TEST(LampFactors, OfAnyPolygonAreThoseOfItsParts) {
 }
 
 }  // namespace
-}  // namespace patchlight::lamp_factors_test
+}  // namespace patchlight::emitter_factors_test

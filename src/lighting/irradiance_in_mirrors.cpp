@@ -1,8 +1,9 @@
-#include "lighting/mirrored_irradiance.h"
+#include "lighting/irradiance_in_mirrors.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "lighting/mirror_paths.h"
 #include "lighting/receiver.h"
 #include "mesh/nested_mesh.h"
 #include "visibility/walk.h"
@@ -46,7 +47,7 @@ SurfacePoint image_of(const MirrorChain& chain, const SurfacePoint& at) {
 // A chain of mirrors, and the sources whose light may come by it.
 struct WantedChain {
   const MirrorChain* chain;
-  std::vector<const MirroredSource*> sources;
+  std::vector<const LightSource*> sources;
 };
 
 // A place of the receiver, which samples lead on from it, and which replicate it belongs to.
@@ -69,8 +70,8 @@ struct OverChains {
 };
 
 struct MirrorSampler {
+  const LightSampler& lights;
   const Lighting& lighting;
-  std::vector<MirroredSource> sources;
   std::vector<std::vector<std::array<double, 4>>> points;  // per replicate, the most that any takes
 
   std::vector<WantedChain> all_chains() const;
@@ -87,8 +88,8 @@ std::vector<WantedChain> MirrorSampler::all_chains() const {
   const MirrorPaths& paths = lighting.mirrors->paths;
   for (const MirrorChain& chain : paths.chains()) {
     WantedChain one{&chain, {}};
-    for (const MirroredSource& source : sources)
-      if (paths.carries(chain, source.id)) one.sources.push_back(&source);
+    for (const LightSource& source : lights.sources())
+      if (paths.carries(chain, source.id())) one.sources.push_back(&source);
     if (!one.sources.empty()) all.push_back(std::move(one));
   }
   return all;
@@ -102,8 +103,8 @@ std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<co
     const MirrorSide& first = chain->mirrors.front();
     if (!(first.normal.dot(ball.centre - first.on_plane) > -ball.radius)) continue;
     WantedChain one{chain, {}};
-    for (const MirroredSource* const source : may_come) {
-      const SourceExtent& extent = source->extent;
+    for (const LightSource* const source : may_come) {
+      const SourceExtent& extent = source->extent();
       const bool passes = extent.direction ? paths.may_pass(*chain, ball, *extent.direction)
                                            : paths.may_pass(*chain, ball, extent.ball);
       if (passes) one.sources.push_back(source);
@@ -125,11 +126,11 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
       const MirrorSide& first = chain->mirrors.front();
       if (!(first.normal.dot(place.at.point - first.on_plane) > 0)) continue;
       const SurfacePoint image = image_of(*chain, place.at);
-      for (const MirroredSource* const source : wanted) {
-        const auto arrival = source->arrival(place.at, image, {place.sample[2], place.sample[3]});
-        if (!arrival) continue;
-        segments.push_back(arrival->segment);
-        unoccluded.push_back(arrival->irradiance);
+      for (const LightSource* const source : wanted) {
+        const LightSample sample = source->sample(image, {place.sample[2], place.sample[3]});
+        if (!(sample.irradiance > 0)) continue;
+        segments.push_back(segment_to(sample, place.at));
+        unoccluded.push_back(sample.irradiance * *sample.color);
         replicate.push_back(place.replicate);
       }
     }
@@ -222,9 +223,10 @@ struct MirrorReceivers {
   int most_doublings = 0;
 };
 
-DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFace> lamps, const MirrorReceivers& all,
-                               const LightingOptions& options, const Observer& observer) {
-  MirrorSampler sampler{lighting, mirrored_sources(lighting, lamps), {}};
+DirectIrradiance in_mirrors_at(const LightSampler& lights, const MirrorReceivers& all, const LightingOptions& options,
+                               const Observer& observer) {
+  const Lighting& lighting = lights.lighting();
+  MirrorSampler sampler{lights, lighting, {}};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
   const std::uint32_t replicates = std::clamp(samples / 2, 2U, 8U);
   const std::uint32_t of_each = samples / replicates;
@@ -256,44 +258,10 @@ DirectIrradiance in_mirrors_at(const Lighting& lighting, std::span<const LampFac
   return direct;
 }
 
-// Up to 256 faces of the strongest emitting polygons, each polygon with both sides, because a chain does not
-// distinguish them. Their chains are ranked; other faces are sampled by all chains.
-std::vector<LampFace> ranked_faces(const Scene& scene) {
-  struct Emitter {
-    std::vector<LampFace> faces;
-    double flux = 0;
-  };
-  std::vector<Emitter> emitters;
-  for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
-    if (!is_lamp(scene, p)) continue;
-    Emitter emitter;
-    for (const Side side : {Side::front, Side::back}) {
-      if (!emits(scene, p, side)) continue;
-      for (const LampFace& face : lamp_faces(scene, p, side)) {
-        emitter.faces.push_back(face);
-        emitter.flux += face.area * face.exitance.mean();
-      }
-    }
-    emitters.push_back(std::move(emitter));
-  }
-  std::stable_sort(emitters.begin(), emitters.end(), [](const auto& a, const auto& b) { return a.flux > b.flux; });
-  std::vector<LampFace> ranked;
-  for (const Emitter& emitter : emitters) {
-    if (ranked.size() + emitter.faces.size() > 256) break;  // the cost grows with faces times mirrors
-    ranked.insert(ranked.end(), emitter.faces.begin(), emitter.faces.end());
-  }
-  return ranked;
-}
-
 }  // namespace
 
-Mirrors::Mirrors(const Scene& scene, const Tracing& tracing, const Lighting& lighting)
-    : paths(scene, lighting.paths.optics(), mirror_chains(scene, mirrored_sources(lighting, ranked_faces(scene)))),
-      aim(scene, *lighting.paths.optics()),
-      occluder(tracing.all_faces()) {}
-
-DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps, const PatchMesh& mesh,
-                                     const LightingOptions& options, const Observer& observer) {
+DirectIrradiance irradiance_in_mirrors(const LightSampler& lights, const PatchMesh& mesh,
+                                       const LightingOptions& options, const Observer& observer) {
   const auto patch = [&](std::size_t k) { return receiver_of(mesh, static_cast<PatchIndex>(k)); };
   const std::vector<double>& areas = options.areas.empty() ? mesh.area : options.areas;
   const double usual = options.usual_area > 0 ? options.usual_area : mean_area(areas);
@@ -301,16 +269,15 @@ DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const L
   const auto share = [&](std::size_t k) { return std::clamp(std::sqrt(areas[k] / usual), 0.25, 1.0); };
   const auto doublings = [&](std::size_t k) -> unsigned { return more.empty() ? 0 : more[k]; };
   const int most = more.empty() ? 0 : *std::max_element(more.begin(), more.end());
-  return in_mirrors_at(lighting, lamps, {std::size_t{mesh.size()}, patch, share, doublings, most}, options, observer);
+  return in_mirrors_at(lights, {std::size_t{mesh.size()}, patch, share, doublings, most}, options, observer);
 }
 
-DirectIrradiance mirrored_irradiance(const Lighting& lighting, std::span<const LampFace> lamps,
-                                     std::span<const SurfacePoint> points, const LightingOptions& options,
-                                     const Observer& observer) {
+DirectIrradiance irradiance_in_mirrors(const LightSampler& lights, std::span<const SurfacePoint> points,
+                                       const LightingOptions& options, const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
   const auto all = [](std::size_t) { return 1.0; };
   const auto doublings = [](std::size_t) -> unsigned { return doublings_at_points; };
-  return in_mirrors_at(lighting, lamps, {points.size(), point, all, doublings, doublings_at_points}, options, observer);
+  return in_mirrors_at(lights, {points.size(), point, all, doublings, doublings_at_points}, options, observer);
 }
 
 }  // namespace patchlight

@@ -1,18 +1,18 @@
-#include "lighting/mirrored_irradiance.h"
-
 #include "patchlight/scene/sides.h"
 
+#include "lighting/direct_irradiance.h"
 #include "mesh/mesher.h"
 #include "support/scenes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
 #include <span>
 #include <vector>
 
-namespace patchlight::mirrored_irradiance_test {
+namespace patchlight::irradiance_in_mirrors_test {
 namespace {
 
 using namespace test;
@@ -29,7 +29,7 @@ Scene floor_before_mirror() {
   return scene;
 }
 
-TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
+TEST(IrradianceInMirrors, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
   const Scene scene = floor_before_mirror();
   const KeptSides sides = kept_sides(scene, Sides::front);
   const PatchMesh mesh = tessellate(scene, sides, 20);
@@ -41,7 +41,7 @@ TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     for (const int samples : {2, 4, 16, 64}) {
       const DirectIrradiance direct =
-          mirrored_irradiance(lighting, {}, mesh, {.mirrored_samples = samples, .seed = seed});
+          direct_irradiance(lighting, mesh, {.mirrored_samples = samples, .seed = seed, .only_in_mirrors = true});
       const double irradiance = direct.irradiance(0, 0);
       // Two samples, in replicates of one, may both lie on the rug.
       if (samples == 2 && irradiance == 0) continue;
@@ -55,7 +55,7 @@ TEST(MirroredIrradiance, OfThePartOverWhichNothingLiesIsThatOfEveryPlaceThere) {
 // Mirrors that face each other have an infinite row of images of a lamp. Chains of up to sixteen mirrors are followed,
 // and the error covers the rest. The sum is over images k = 1, 2 ... of a small ball, on either side, at distance z
 // from mirror 0.
-TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
+TEST(IrradianceInMirrors, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
   constexpr double gap = 2, height = 1, radius = 0.05;
   for (const double reflectance : {0.8, 0.97, 1.0}) {
     Material mirror = grey(0);
@@ -75,7 +75,7 @@ TEST(MirroredIrradiance, HasTheErrorOfImagesThatAreTooManyToBeFollowed) {
     const Lighting lighting = lighting_of(scene, tracing);
     ASSERT_TRUE(lighting.mirrors);
     const std::vector<SurfacePoint> points{{Point(1, 0, 0), Vector::UnitZ(), 0}};
-    const DirectIrradiance found = mirrored_irradiance(lighting, {}, points, {});
+    const DirectIrradiance found = direct_irradiance(lighting, points, {.only_in_mirrors = true});
     // E sin^2 of the half angle times the cosine of each image, at a distance of k gaps to the side.
     double exact = 0;
     for (double k = 1; k < 100000; ++k) {
@@ -146,7 +146,7 @@ AimedSpot aimed_spot(std::mt19937& random, std::size_t mirrors) {
 
 // Rotated, and in the size of a millimeter model that is read in meters: irradiance decreases with the square of
 // lengths.
-TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
+TEST(IrradianceInMirrors, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 40; ++trial) {
     const AimedSpot spot = aimed_spot(random, trial % 3 == 2 ? 2 : 1);
@@ -163,7 +163,7 @@ TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
       const SurfacePoint at{motion * spot.at.point, rotation * spot.at.normal, no_polygon};
       const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
       const Lighting lighting = lighting_of(scene, tracing);
-      const DirectIrradiance found = mirrored_irradiance(lighting, {}, std::span(&at, 1), {});
+      const DirectIrradiance found = direct_irradiance(lighting, std::span(&at, 1), {.only_in_mirrors = true});
       const double expected = spot.expected / (scale * scale);
       // The profile of a spot amplifies the rounding of the cosine, 1e-16: 2^-(1e-8 / 0.02)^1.5 is 1 - 2e-10. Tails of
       // beams via two mirrors are smaller than 1e-6.
@@ -174,9 +174,88 @@ TEST(MirroredIrradiance, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
   }
 }
 
+// A ring of equal mirrors, open to an even sky of radiance 1, is the mirror of a prism without a lid.
+constexpr int ring_sides = 40;  // more than are targets of rays
+constexpr double ring_height = 2, ring_reflectance = 0.9;
+
+Point ring_corner(int k, double z) {
+  const double radius = 1 / std::cos(std::numbers::pi / ring_sides);  // of an inradius of 1
+  const double angle = (2 * k + 1) * std::numbers::pi / ring_sides;
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+Scene ring_of_mirrors() {
+  Material mirror = grey(0);
+  mirror.specular_reflectance = Spectrum::Constant(1, ring_reflectance);
+  Scene scene = empty_scene({mirror});
+  for (int k = 0; k < ring_sides; ++k)
+    scene = with_quad(std::move(scene), {ring_corner(k, 0), ring_corner(k, ring_height),
+                                         ring_corner(k + 1, ring_height), ring_corner(k + 1, 0)});
+  Sky sky;
+  sky.kind = SkyKind::uniform;
+  sky.zenith_radiance = Spectrum::Ones(1);
+  sky.ground_radiance = Spectrum::Zero(1);
+  scene.sky = sky;
+  return scene;
+}
+
+// The number of reflections of a path in the plane, of a length, before it ends.
+int reflections_in_ring(Eigen::Vector2d place, Eigen::Vector2d direction, double length) {
+  int reflections = 0;
+  for (; reflections < 400; ++reflections) {
+    double nearest = length;
+    Eigen::Vector2d normal(0, 0);
+    for (int k = 0; k < ring_sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / ring_sides;
+      const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
+      const double toward = outward.dot(direction);
+      const double distance = (1 - outward.dot(place)) / toward;
+      if (toward > 1e-12 && distance < nearest) {
+        nearest = distance;
+        normal = outward;
+      }
+    }
+    if (nearest == length) break;
+    place += nearest * direction;
+    direction -= 2 * normal.dot(direction) * normal;
+    length -= nearest;
+  }
+  return reflections;
+}
+
+// E = integral of rho^k cos over the directions with k > 0 reflections, by 200 x 200 directions distributed as the
+// cosine. Doubling their number changes the sum by less than 1e-3.
+TEST(IrradianceInMirrors, OfMoreEqualMirrorsThanTargetsHasTheSkyOfAll) {
+  const SurfacePoint at{Point(0.3, 0.1, 0.2), Vector::UnitZ(), no_polygon};
+  constexpr int steps = 200;
+  double exact = 0;
+  for (int ring = 0; ring < steps; ++ring) {
+    const double sine = std::sqrt((ring + 0.5) / steps);
+    const double length = (ring_height - at.point.z()) * sine / std::sqrt(1 - sine * sine);
+    for (int sector = 0; sector < steps; ++sector) {
+      const double angle = 2 * std::numbers::pi * (sector + 0.5) / steps;
+      const int k = reflections_in_ring(at.point.head<2>(), {std::cos(angle), std::sin(angle)}, length);
+      if (k > 0) exact += std::numbers::pi / (steps * steps) * std::pow(ring_reflectance, k);
+    }
+  }
+  const Scene scene = ring_of_mirrors();
+  const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(scene, tracing);
+  double mean = 0, variance = 0;
+  constexpr int seeds = 8;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const DirectIrradiance found =
+        direct_irradiance(lighting, std::span(&at, 1), {.seed = seed, .only_in_mirrors = true});
+    mean += found.irradiance(0, 0) / seeds;
+    variance += std::pow(found.standard_error(0, 0) / seeds, 2);
+  }
+  EXPECT_NEAR(mean, exact, 4 * std::sqrt(variance) + 1e-3 * exact);
+  EXPECT_LT(std::sqrt(variance), 0.01 * exact);
+}
+
 // Chains of mirrors are searched for groups of points. A single point gets the same bits as among others, some of which
 // only the other mirror lights.
-TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
+TEST(IrradianceInMirrors, OfAPointDoesNotDependOnThoseAroundIt) {
   Material left = grey(0);
   left.specular_reflectance = Spectrum::Constant(1, 0.9);
   Material right = grey(0);
@@ -194,13 +273,13 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
   ASSERT_TRUE(lighting.mirrors);
   std::vector<SurfacePoint> points;
   for (int k = 0; k < 150; ++k) points.push_back({Point(-4.5 + 0.06 * k, 0.1, 0), Vector::UnitZ(), 0});
-  const DirectIrradiance all = mirrored_irradiance(lighting, {}, points, {});
+  const DirectIrradiance all = direct_irradiance(lighting, points, {.only_in_mirrors = true});
   // Points keep their numbers, which determine their samples: the earlier points are moved to one place, far away.
   int lit = 0;
   for (const std::size_t k : {0UL, 10UL, 63UL, 64UL, 75UL, 149UL}) {
     std::vector<SurfacePoint> alone(k, {Point(0, 8.9, 0), Vector::UnitZ(), 0});
     alone.push_back(points[k]);
-    const DirectIrradiance one = mirrored_irradiance(lighting, {}, alone, {});
+    const DirectIrradiance one = direct_irradiance(lighting, alone, {.only_in_mirrors = true});
     const auto row = static_cast<Eigen::Index>(k);
     EXPECT_EQ(one.irradiance(row, 0), all.irradiance(row, 0)) << "point " << k;
     EXPECT_EQ(one.standard_error(row, 0), all.standard_error(row, 0)) << "point " << k;
@@ -212,7 +291,7 @@ TEST(MirroredIrradiance, OfAPointDoesNotDependOnThoseAroundIt) {
 
 // A floor that is lit by a ball via a mirror too small for the whole image. Three doublings leave an eighth of the
 // variance, or less, because samples are stratified. Other patches keep their bits.
-TEST(MirroredIrradiance, OfDoubledPatchesHasAsManyMoreRays) {
+TEST(IrradianceInMirrors, OfDoubledPatchesHasAsManyMoreRays) {
   Material mirror = grey(0);
   mirror.specular_reflectance = Spectrum::Constant(1, 0.9);
   Scene scene =
@@ -233,8 +312,8 @@ TEST(MirroredIrradiance, OfDoubledPatchesHasAsManyMoreRays) {
     const LightingOptions few{.mirrored_samples = 32, .seed = seed};
     LightingOptions more = few;
     more.doublings = doublings;
-    const DirectIrradiance before = mirrored_irradiance(lighting, {}, mesh, few);
-    const DirectIrradiance after = mirrored_irradiance(lighting, {}, mesh, more);
+    const DirectIrradiance before = direct_irradiance(lighting, mesh, few);
+    const DirectIrradiance after = direct_irradiance(lighting, mesh, more);
     usual += before.standard_error.square();
     doubled += after.standard_error.square();
     for (PatchIndex i = 1; i < mesh.size(); i += 2) EXPECT_EQ(before.irradiance(i, 0), after.irradiance(i, 0));
@@ -247,4 +326,4 @@ TEST(MirroredIrradiance, OfDoubledPatchesHasAsManyMoreRays) {
 }
 
 }  // namespace
-}  // namespace patchlight::mirrored_irradiance_test
+}  // namespace patchlight::irradiance_in_mirrors_test

@@ -1,4 +1,4 @@
-#include "transport/lamp_factors.h"
+#include "transport/emitter_factors.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
@@ -14,7 +14,7 @@ namespace patchlight {
 namespace {
 
 // A triangle or convex quadrilateral of a lamp.
-struct LampPiece {
+struct EmitterPiece {
   PatchShape shape;
   SampledPatch sampled;
   double nonspecular = 1;  // the share of arriving light that is neither transmitted nor mirrored
@@ -39,7 +39,7 @@ bool is_convex_quadrilateral(const std::vector<Point>& points) {
 }
 
 // Counter-clockwise from the side that shines.
-std::vector<PatchCorners> pieces_of(const Scene& scene, const LampSide& lamp) {
+std::vector<PatchCorners> pieces_of(const Scene& scene, const EmitterSide& lamp) {
   const std::vector<Point> points = corner_points(scene, lamp.polygon);
   std::vector<PatchCorners> pieces;
   if (is_convex_quadrilateral(points)) {
@@ -54,9 +54,9 @@ std::vector<PatchCorners> pieces_of(const Scene& scene, const LampSide& lamp) {
 }
 
 // The pieces of all lamps, one lamp after the other. `keys` of the mesh's patches, patch_keys().
-std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                                   std::span<const LampSide> lamps, const std::vector<std::uint32_t>& keys) {
-  std::vector<LampPiece> pieces;
+std::vector<EmitterPiece> emitter_pieces(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
+                                         std::span<const EmitterSide> lamps, const std::vector<std::uint32_t>& keys) {
+  std::vector<EmitterPiece> pieces;
   for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp) {
     const auto& [polygon, side] = lamps[lamp];
     const PatchRange patches = mesh.patches_on(polygon, side);
@@ -72,13 +72,13 @@ std::vector<LampPiece> lamp_pieces(const Scene& scene, const PatchMesh& mesh, co
 }
 
 // Shadow rays of a pair in one half; where it is partly visible four times as many.
-std::uint32_t usual_rays(const LampSampling& sampling) {
+std::uint32_t usual_rays(const EmitterSampling& sampling) {
   const std::uint32_t packet = ShadowPacket::size;
   return packet * std::bit_ceil(std::max(static_cast<std::uint32_t>(sampling.rays) / (4 * packet), 1U));
 }
 
 // The result of the shadow rays of one half of a pair.
-struct LampRays {
+struct EmitterRays {
   float weight = 0;       // summed geometry terms, 1/m^2
   float seen_weight = 0;  // each times what its ray lets through
   float seen = 0;         // summed shares that are let through, of samples with a weight
@@ -110,30 +110,30 @@ struct Pool {
 };
 
 // A patch with a piece, in both halves.
-struct LampPair {
+struct EmitterPair {
   std::array<double, 2> form_factor{};
   double unoccluded = 0;
   std::array<std::uint8_t, 2> bin{};
 };
 
-struct LampSampler {
+struct EmitterSampler {
   const PatchMesh& mesh;
   const Occluder& occluder;
-  std::vector<LampPiece> pieces;
+  std::vector<EmitterPiece> pieces;
   std::vector<std::uint32_t> keys;
   std::uint32_t usual;  // rays of a pair in one half
   SampleTable table;
   bool can_occlude;
   double scale;
 
-  double unoccluded(const PatchShape& patch, const LampPiece& piece) const;
-  void trace(LampRays& rays, const SampledPatch& patch, const LampPiece& piece, const SampleSet& set,
+  double unoccluded(const PatchShape& patch, const EmitterPiece& piece) const;
+  void trace(EmitterRays& rays, const SampledPatch& patch, const EmitterPiece& piece, const SampleSet& set,
              std::uint32_t upto) const;
-  LampPair pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const LampPiece& piece,
-                std::uint64_t& shadow_rays) const;
+  EmitterPair pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const EmitterPiece& piece,
+                   std::uint64_t& shadow_rays) const;
 };
 
-double LampSampler::unoccluded(const PatchShape& patch, const LampPiece& piece) const {
+double EmitterSampler::unoccluded(const PatchShape& patch, const EmitterPiece& piece) const {
   // The form factor of a point varies with the square of diameter over distance: a patch 8 diameters away from a piece
   // is taken at its centroid, and one 2 diameters away at three or four points.
   const double distance = (piece.shape.centroid - patch.centroid).norm() - piece.shape.radius;
@@ -149,8 +149,8 @@ double LampSampler::unoccluded(const PatchShape& patch, const LampPiece& piece) 
 }
 
 // Samples up to number `upto`, packet by packet.
-void LampSampler::trace(LampRays& rays, const SampledPatch& patch, const LampPiece& piece, const SampleSet& set,
-                        std::uint32_t upto) const {
+void EmitterSampler::trace(EmitterRays& rays, const SampledPatch& patch, const EmitterPiece& piece,
+                           const SampleSet& set, std::uint32_t upto) const {
   PairSamples next;
   while (rays.all < upto) {
     add_samples(next, 0, ShadowPacket::size, patch, piece.sampled, set, rays.all, scale);
@@ -168,7 +168,7 @@ void LampSampler::trace(LampRays& rays, const SampledPatch& patch, const LampPie
 
 // docs/theory/occluded-form-factors.md, formula (5), as PairSampler::exchange_area(); U is the form factor without
 // occluders, w_k = A G_k with the area of the lamp's piece. It is at most `most`.
-double form_factor_by(const LampRays& rays, double U, double area, double most) {
+double form_factor_by(const EmitterRays& rays, double U, double area, double most) {
   const double share = rays.visible_share();
   if (share == 0) return 0;
   const double n = rays.all;
@@ -180,10 +180,10 @@ double form_factor_by(const LampRays& rays, double U, double area, double most) 
   return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, most);
 }
 
-LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled, const LampPiece& piece,
-                           std::uint64_t& shadow_rays) const {
+EmitterPair EmitterSampler::pair(PatchIndex i, const PatchShape& patch, const SampledPatch& sampled,
+                                 const EmitterPiece& piece, std::uint64_t& shadow_rays) const {
   if (orientation(patch, piece.shape) == Orientation::averted) return {};
-  LampPair pair;
+  EmitterPair pair;
   if (!can_occlude) {
     pair.unoccluded = piece.nonspecular * unoccluded(patch, piece);
     pair.form_factor = {pair.unoccluded, pair.unoccluded};
@@ -192,7 +192,7 @@ LampPair LampSampler::pair(PatchIndex i, const PatchShape& patch, const SampledP
   }
   // 1. The usual rays of both halves; more where those of the other half disagree.
   std::array<SampleSet, 2> sets;
-  std::array<LampRays, 2> rays;
+  std::array<EmitterRays, 2> rays;
   for (std::uint32_t half = 0; half < 2; ++half) {
     sets[half] = table.of_pair(keys[i], piece.key, half);
     trace(rays[half], sampled, piece, sets[half], usual);
@@ -223,19 +223,20 @@ struct PieceValues {
   std::array<Table<std::uint8_t>, 2> bin;
 };
 
-struct LampTask {
+struct EmitterTask {
   Pool pool;
   std::uint64_t shadow_rays = 0;
 };
 
 // All pieces with one patch.
-void sample_patch(const LampSampler& sampler, PatchIndex i, LampFactors& factors, PieceValues& values, LampTask& task) {
+void sample_patch(const EmitterSampler& sampler, PatchIndex i, EmitterFactors& factors, PieceValues& values,
+                  EmitterTask& task) {
   const PatchShape patch = patch_shape(sampler.mesh, i);
   const SampledPatch sampled = sampled_patch(patch, sampler.mesh.polygon[i], sampler.occluder.frame());
   for (std::size_t k = 0; k < sampler.pieces.size(); ++k) {
-    const LampPiece& piece = sampler.pieces[k];
+    const EmitterPiece& piece = sampler.pieces[k];
     const auto column = static_cast<Eigen::Index>(k);
-    const LampPair pair = sampler.pair(i, patch, sampled, piece, task.shadow_rays);
+    const EmitterPair pair = sampler.pair(i, patch, sampled, piece, task.shadow_rays);
     const double difference = 0.5 * (pair.form_factor[0] - pair.form_factor[1]);
     values.unoccluded(i, column) = static_cast<float>(pair.unoccluded);
     for (std::size_t half = 0; half < 2; ++half) {
@@ -247,9 +248,9 @@ void sample_patch(const LampSampler& sampler, PatchIndex i, LampFactors& factors
 }
 
 // The variances of the means of both halves, by the visible shares that either half has found.
-LampValues standard_errors(const LampSampler& sampler, const PieceValues& values, const Pool& pool,
-                           Eigen::Index lamps) {
-  LampValues squares = LampValues::Zero(values.unoccluded.rows(), lamps);
+EmitterValues standard_errors(const EmitterSampler& sampler, const PieceValues& values, const Pool& pool,
+                              Eigen::Index lamps) {
+  EmitterValues squares = EmitterValues::Zero(values.unoccluded.rows(), lamps);
   for (Eigen::Index i = 0; i < squares.rows(); ++i) {
     for (std::size_t k = 0; k < sampler.pieces.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
@@ -264,32 +265,33 @@ LampValues standard_errors(const LampSampler& sampler, const PieceValues& values
 
 }  // namespace
 
-std::size_t piece_count(const Scene& scene, const LampSide& lamp) { return pieces_of(scene, lamp).size(); }
+std::size_t piece_count(const Scene& scene, const EmitterSide& lamp) { return pieces_of(scene, lamp).size(); }
 
-LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                         std::span<const LampSide> lamps, const LampSampling& sampling, const Observer& observer) {
+EmitterFactors emitter_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
+                               std::span<const EmitterSide> lamps, const EmitterSampling& sampling,
+                               const Observer& observer) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const std::uint32_t usual = usual_rays(sampling);
-  const LampSampler sampler{mesh,
-                            occluder,
-                            lamp_pieces(scene, mesh, occluder, lamps, keys),
-                            keys,
-                            usual,
-                            SampleTable(4 * usual, hash({sampling.seed, stream::points_on_lamps})),
-                            occluder.can_occlude(),
-                            occluder.frame().scale};
+  const EmitterSampler sampler{mesh,
+                               occluder,
+                               emitter_pieces(scene, mesh, occluder, lamps, keys),
+                               keys,
+                               usual,
+                               SampleTable(4 * usual, hash({sampling.seed, stream::points_on_emitters})),
+                               occluder.can_occlude(),
+                               occluder.frame().scale};
   const auto rows = static_cast<Eigen::Index>(mesh.size());
   const auto count = static_cast<Eigen::Index>(lamps.size());
   const auto pieces = static_cast<Eigen::Index>(sampler.pieces.size());
-  LampFactors factors;
-  for (LampValues& half : factors.halves) half = LampValues::Zero(rows, count);
+  EmitterFactors factors;
+  for (EmitterValues& half : factors.halves) half = EmitterValues::Zero(rows, count);
   PieceValues values;
   values.unoccluded.resize(rows, pieces);
   for (auto& bin : values.bin) bin.resize(rows, pieces);
 
   // 1. Both halves of every pair.
   constexpr PatchIndex at_once = 256;
-  std::vector<LampTask> tasks((mesh.size() + at_once - 1) / at_once);
+  std::vector<EmitterTask> tasks((mesh.size() + at_once - 1) / at_once);
   parallel_for(tasks.size(), Stage::form_factors, observer, [&](std::size_t t) {
     const auto begin = static_cast<PatchIndex>(t * at_once);
     for (PatchIndex i = begin; i < std::min(begin + at_once, mesh.size()); ++i)
@@ -298,7 +300,7 @@ LampFactors lamp_factors(const Scene& scene, const PatchMesh& mesh, const Occlud
 
   // 2. The errors that their differences show.
   Pool pool;
-  for (const LampTask& task : tasks) {
+  for (const EmitterTask& task : tasks) {
     factors.shadow_rays += task.shadow_rays;
     for (std::uint8_t bin = 0; bin < Pool::bins; ++bin) pool.add(bin, task.pool.squares[bin], task.pool.weights[bin]);
   }

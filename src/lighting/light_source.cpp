@@ -1,0 +1,241 @@
+#include "lighting/light_source.h"
+
+#include "base/sampling.h"
+#include "form_factor/point_polygon.h"
+#include "scene/photometric_web.h"
+#include "scene/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace patchlight {
+namespace {
+
+// Relative intensity and color of luminaires without extent.
+double relative_intensity(const PointLight&, const Luminaire&, const Vector&, const Vector&) { return 1; }
+double relative_intensity(const SpotLight& spot, const Luminaire& luminaire, const Vector& direction, const Vector&) {
+  return spot_profile(spot, luminaire.aim.dot(direction));
+}
+double relative_intensity(const WebLight& light, const Luminaire& luminaire, const Vector& direction,
+                          const Vector& up) {
+  const double tilt = std::acos(std::clamp(-luminaire.aim.dot(up), -1.0, 1.0)) * (180 / std::numbers::pi);
+  return tilt_factor(*light.web, tilt) * candela(*light.web, {luminaire.aim, luminaire.zero_plane}, direction);
+}
+const Spectrum& color_of(const PointLight& light) { return light.intensity; }
+const Spectrum& color_of(const SpotLight& light) { return light.intensity; }
+const Spectrum& color_of(const WebLight& light) { return light.watts_per_lumen; }
+
+// E = I cos theta / d^2
+template <typename Light>
+LightSample sample_point(const Light& light, const Luminaire& luminaire, const Vector& up, const SurfacePoint& at) {
+  const Vector way = luminaire.position - at.point;
+  const double square = way.squaredNorm();
+  const double cosine = at.normal.dot(way) / std::sqrt(square);
+  if (!(cosine > 0)) return {};
+  const double intensity = relative_intensity(light, luminaire, -way / std::sqrt(square), up);
+  return {luminaire.position, no_polygon, intensity * cosine / square, &color_of(light)};
+}
+
+// Directions are uniform in the solid angle of the sphere: Shirley, Wang and Zimmerman 1996, section 3.2.
+LightSample sample_sphere(const SphericalLamp& lamp, const Point& centre, const SurfacePoint& at,
+                          const Eigen::Vector2d& uv) {
+  const Vector way = centre - at.point;
+  const double distance = way.norm();
+  if (distance <= lamp.radius) return {};
+  // The sphere fills the cone with this half angle; 1 - cos without cancellation.
+  const double sine = lamp.radius / distance;
+  const double lift = sine * sine / (1 + std::sqrt(1 - sine * sine));
+  const double cosine = 1 - uv.x() * lift;
+  const double turn = 2 * std::numbers::pi * uv.y();
+  const Vector axis = way / distance;
+  const Vector across = axis.unitOrthogonal();
+  const Vector direction = cosine * axis + std::sqrt(std::max(0.0, 1 - cosine * cosine)) *
+                                               (std::cos(turn) * across + std::sin(turn) * axis.cross(across));
+  const double received = at.normal.dot(direction);
+  if (!(received > 0)) return {};
+  // Nearer than the sphere's middle by the half chord.
+  const double along = distance * cosine;
+  const double half_chord = std::sqrt(std::max(0.0, lamp.radius * lamp.radius - distance * distance + along * along));
+  // L times the solid angle of the cone, 2 pi (1 - cos), with L = E / pi.
+  return {at.point + (along - half_chord) * direction, no_polygon, 2 * lift * received, &lamp.exitance};
+}
+
+const SphericalLamp* sphere_of(const Luminaire& luminaire) { return std::get_if<SphericalLamp>(&luminaire.light); }
+
+std::size_t corner_count(const EmitterFace& face) { return face.corners[2] == face.corners[3] ? 3 : 4; }
+
+// Above 0 wherever each of face and point is before the other.
+double possible_irradiance_of(const EmitterFace& face, const SurfacePoint& at) {
+  double rise = 0;
+  for (const Point& corner : face.corners) rise = std::max(rise, at.normal.dot(corner - at.point));
+  const double before = face.normal.dot(at.point - face.corners[0]);
+  if (!(rise > 0 && before > 0)) return 0;
+  const Point middle = (face.corners[0] + face.corners[1] + face.corners[2] + face.corners[3]) / 4;
+  const double square = (middle - at.point).squaredNorm() + face.area;
+  return face.exitance.mean() * face.area * rise * before / (std::numbers::pi * square * square);
+}
+
+// The irradiance of a surface that faces the sphere, where any of it is above the horizon.
+double possible_irradiance_of(const SphericalLamp& lamp, const Ball& ball, const SurfacePoint& at) {
+  const Vector way = ball.centre - at.point;
+  const bool is_before = at.normal.dot(way) > -ball.radius && way.norm() > ball.radius;
+  return is_before ? lamp.exitance.mean() * ball.radius * ball.radius / way.squaredNorm() : 0;
+}
+
+// Numbers at equal steps with one offset, u: each choice is made about as often as it is probable.
+std::vector<std::size_t> choose_evenly(const std::vector<double>& weights, double sum, std::uint32_t count, double u) {
+  std::vector<std::size_t> chosen;
+  std::size_t next = 0;
+  double before = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const double wanted = (k + u) / count * sum;
+    while (next + 1 < weights.size() && before + weights[next] <= wanted) before += weights[next++];
+    while (next > 0 && !(weights[next] > 0)) before -= weights[--next];
+    chosen.push_back(next);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Ball ball_around(std::span<const Point> points) {
+  Ball ball;
+  for (const Point& point : points) ball.centre += point / static_cast<double>(points.size());
+  for (const Point& point : points) ball.radius = std::max(ball.radius, (point - ball.centre).norm());
+  return ball;
+}
+
+std::vector<EmitterFace> emitter_faces(const Scene& scene, PolygonIndex polygon, Side side) {
+  std::vector<Point> corners = corner_points(scene, polygon);
+  if (side == Side::back) std::reverse(corners.begin(), corners.end());
+  const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
+  const Vector normal = (side == Side::front ? 1 : -1) * front_normal(scene, polygon);
+  std::vector<EmitterFace> faces;
+  if (corners.size() == 4 && is_convex(corners)) {
+    faces.push_back(
+        {{corners[0], corners[1], corners[2], corners[3]}, normal, area_vector(corners).norm(), polygon, exitance});
+    return faces;
+  }
+  for (const auto& [a, b, c] : triangles_of(corners))
+    faces.push_back({{a, b, c, c}, normal, (b - a).cross(c - a).norm() / 2, polygon, exitance});
+  return faces;
+}
+
+LightSample sample_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at,
+                             const Eigen::Vector2d& uv) {
+  if (const SphericalLamp* const sphere = sphere_of(luminaire))
+    return sample_sphere(*sphere, luminaire.position, at, uv);
+  if (const auto* point = std::get_if<PointLight>(&luminaire.light)) return sample_point(*point, luminaire, up, at);
+  if (const auto* spot = std::get_if<SpotLight>(&luminaire.light)) return sample_point(*spot, luminaire, up, at);
+  return sample_point(std::get<WebLight>(luminaire.light), luminaire, up, at);
+}
+
+LightSource::LightSource(const Luminaire& luminaire, const Vector& up, std::uint32_t id)
+    : id_(id),
+      is_delta_(sphere_of(luminaire) == nullptr),
+      extent_{{}, {luminaire.position, is_delta_ ? 0 : sphere_of(luminaire)->radius}},
+      axis_(luminaire.aim),
+      of_(OfLuminaire{&luminaire, up}) {}
+
+LightSource::LightSource(const Lighting& lighting, const Sun& sun, std::uint32_t id)
+    : id_(id), is_delta_(true), extent_{sun.direction, {}}, axis_(-sun.direction), of_(OfSun{&lighting, &sun}) {}
+
+LightSource::LightSource(EmitterFace face, std::uint32_t id)
+    : id_(id),
+      is_delta_(false),
+      extent_{{}, ball_around(face.corners)},
+      axis_(face.normal),
+      of_(OfFace{face, QuadPoints(face.corners)}) {}
+
+LightSample LightSource::sample_of(const OfLuminaire& source, const SurfacePoint& at, const Eigen::Vector2d& uv) const {
+  return sample_luminaire(*source.luminaire, source.up, at, uv);
+}
+
+LightSample LightSource::sample_of(const OfSun& source, const SurfacePoint& at, const Eigen::Vector2d&) const {
+  const Vector& direction = source.sun->direction;
+  const double cosine = at.normal.dot(direction);
+  if (!(cosine > 0)) return {};
+  return {source.lighting->paths.beyond(at.point, direction), no_polygon, cosine, &source.sun->normal_irradiance};
+}
+
+// E G A
+LightSample LightSource::sample_of(const OfFace& source, const SurfacePoint& at, const Eigen::Vector2d& uv) const {
+  const Point place = source.points.at(uv.x(), uv.y());
+  const Vector toward = place - at.point;
+  const double cosine = at.normal.dot(toward);
+  const double cosine_there = -source.face.normal.dot(toward);
+  const double square = toward.squaredNorm();
+  const double geometry =
+      cosine > 0 && cosine_there > 0 ? cosine * cosine_there / (std::numbers::pi * square * square) : 0;
+  return {place, source.face.polygon, geometry * source.face.area, &source.face.exitance};
+}
+
+LightSample LightSource::sample(const SurfacePoint& at, const Eigen::Vector2d& uv) const {
+  return std::visit([&](const auto& source) { return sample_of(source, at, uv); }, of_);
+}
+
+std::optional<double> LightSource::unoccluded(const SurfacePoint& at) const {
+  const auto* const of_face = std::get_if<OfFace>(&of_);
+  if (of_face == nullptr) return std::nullopt;
+  const EmitterFace& face = of_face->face;
+  return point_to_polygon(at.point, at.normal, std::span(face.corners.data(), corner_count(face)));
+}
+
+double LightSource::possible_irradiance(const SurfacePoint& at) const {
+  if (is_delta_) {
+    const LightSample arriving = sample(at, {0.5, 0.5});
+    return arriving.irradiance > 0 ? arriving.irradiance * arriving.color->mean() : 0;
+  }
+  if (const auto* const of_face = std::get_if<OfFace>(&of_)) return possible_irradiance_of(of_face->face, at);
+  return possible_irradiance_of(*sphere_of(*std::get<OfLuminaire>(of_).luminaire), extent_.ball, at);
+}
+
+LightSampler::LightSampler(const Lighting& lighting, std::vector<EmitterFace> faces) : lighting_(&lighting) {
+  std::uint32_t id = 0;
+  for (const Luminaire& luminaire : lighting.luminaires) sources_.emplace_back(luminaire, lighting.up, id++);
+  if (lighting.sun) sources_.emplace_back(lighting, *lighting.sun, id);
+  without_faces_ = sources_.size();
+  for (EmitterFace& face : faces) {
+    const std::uint32_t of_polygon = id + 1 + face.polygon;
+    sources_.emplace_back(std::move(face), of_polygon);
+  }
+}
+
+std::vector<SourceChoice> LightSampler::choose(const SurfacePoint& at, std::uint32_t rays, double u) const {
+  constexpr std::size_t few_sources = 4;
+  constexpr std::uint32_t rays_with_extent = 2;
+  std::vector<SourceChoice> chosen;
+  std::vector<double> weights(sources_.size(), 0);
+  double sum = 0;
+  std::size_t lit_by = 0;
+  std::uint32_t rays_each = 1;
+  for (std::uint32_t k = 0; k < sources_.size(); ++k) {
+    const double possible = sources_[k].possible_irradiance(at);
+    if (!(possible > 0)) continue;
+    if (sources_[k].extent().direction) {
+      chosen.push_back({k, 1, 1});
+      continue;
+    }
+    weights[k] = possible;
+    sum += possible;
+    ++lit_by;
+    if (!sources_[k].is_delta()) rays_each = rays_with_extent;
+  }
+  const auto rays_of = [&](std::size_t k, std::uint32_t with_extent) {
+    return sources_[k].is_delta() ? 1 : with_extent;
+  };
+  if (lit_by <= few_sources) {
+    const std::uint32_t each = lit_by > 0 ? std::max(rays_with_extent, rays / static_cast<std::uint32_t>(lit_by)) : 0;
+    for (std::uint32_t k = 0; k < sources_.size(); ++k)
+      if (weights[k] > 0) chosen.push_back({k, rays_of(k, each), 1});
+    return chosen;
+  }
+  const std::uint32_t count = std::max<std::uint32_t>(1, rays / rays_each);
+  for (const std::size_t k : choose_evenly(weights, sum, count, u))
+    chosen.push_back({static_cast<std::uint32_t>(k), rays_of(k, rays_each), sum / (weights[k] * count)});
+  return chosen;
+}
+
+}  // namespace patchlight
