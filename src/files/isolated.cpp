@@ -73,17 +73,16 @@ constexpr char sends_refusal = 'R';  // text of an InputError
 constexpr char sends_failure = 'F';  // text of another exception
 
 constexpr rlim_t bytes_per_byte_of_file = 300;
+constexpr rlim_t bytes_of_file_per_second = 100'000;
 
 // Limits the additional memory of this process.
-void limit_memory(const std::string& file, rlim_t most_bytes) {
+void limit_memory(rlim_t bytes_of_file, rlim_t most_bytes) {
   // proc(5): sizes in pages: program, resident, shared, text, lib, data and stack
   std::ifstream statm("/proc/self/statm");
   rlim_t pages = 0;
   for (int field = 0; field < 6; ++field) statm >> pages;
   if (!statm) return;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  const rlim_t more = most_bytes + (error ? 0 : bytes_per_byte_of_file * size);
+  const rlim_t more = most_bytes + bytes_per_byte_of_file * bytes_of_file;
   const rlim_t bytes = pages * static_cast<rlim_t>(sysconf(_SC_PAGE_SIZE)) + more;
   const rlimit limit = {bytes, bytes};
   setrlimit(RLIMIT_DATA, &limit);
@@ -96,11 +95,15 @@ void prepare_child(const std::string& file, const ChildLimits& limits) {
     // Signals that the caller ignores stay ignored.
     if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
-  const rlimit seconds = {limits.seconds, limits.seconds};
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  const rlim_t bytes_of_file = error ? 0 : size;
+  const rlim_t most_seconds = limits.seconds + bytes_of_file / bytes_of_file_per_second;
+  const rlimit seconds = {most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &seconds);
   const rlimit no_core_dump = {0, 0};
   setrlimit(RLIMIT_CORE, &no_core_dump);
-  limit_memory(file, limits.bytes);
+  limit_memory(bytes_of_file, limits.bytes);
   const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);

@@ -111,9 +111,9 @@ class MessageReader {
   std::string_view bytes_;
 };
 
-/// Limits of a child process. A house of 2 MB takes 0.1 s and 0.1 GB; a damaged number may make assimp read forever.
+/// Limits of a child process. A house of 2 MB takes 0.1 s and 0.1 GB; a damaged number may make a library read forever.
 struct ChildLimits {
-  unsigned seconds = 60;                          ///< processor time
+  unsigned seconds = 10;                          ///< processor time, in addition to 1 s for each 100 kB of the file
   std::uint64_t bytes = std::uint64_t{1} << 30U;  ///< memory, in addition to 300 bytes for each byte of the file
 };
 

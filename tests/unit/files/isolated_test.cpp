@@ -134,6 +134,22 @@ TEST(OutputIsolated, ProgramsThatFailOrNeverEndAreARefusalOfTheFile) {
   EXPECT_NE(refusal_of_program("while :; do :; done").find("took too much time or memory"), std::string::npos);
 }
 
+// The processor time that a child has for a file of a size, in seconds.
+unsigned long seconds_for(std::size_t bytes) {
+  const std::string file = testing::TempDir() + "patchlight_seconds_test_" + std::to_string(getpid());
+  std::ofstream(file) << std::string(bytes, ' ');
+  const std::string seconds = output_isolated(file, {{"/bin/sh", "-c", "ulimit -t"}, {}}, "");
+  std::remove(file.c_str());
+  return std::stoul(seconds);
+}
+
+// A damaged line of 40 bytes makes web-ifc loop without end.
+TEST(OutputIsolated, TheTimeGrowsWithTheFileAndSmallFilesEndSoon) {
+  const unsigned long least = seconds_for(2'000);
+  EXPECT_LE(least, 10U);
+  EXPECT_EQ(seconds_for(5'000'000), least + 50);
+}
+
 TEST(OutputIsolated, MemoryIsLimited) {
   EXPECT_EQ(refusal_of_program("exec /usr/bin/python3 -c 'x = bytearray(3 << 30); print(1)'").rfind("room.ifc: ", 0),
             0U);
