@@ -112,7 +112,7 @@ inline constexpr double form_factor_scale = 1.5;
 
 /// If lamps are a larger share of the patches, the error estimate treats them as other light, because rays find them as
 /// well.
-inline constexpr double most_lamps = 0.125;
+inline constexpr double most_emitters = 0.125;
 
 /// The excess of the radiosity of the lit part of a patch that reaches into a solid over its mean: B_i d_i / (1 - d_i),
 /// where d_i is the dark share, at most 1/2. While the patch is wider than its dark part, the missing light does not

@@ -25,36 +25,37 @@ EmitterChoice::Chosen EmitterChoice::at(double u) const {
   const double place = u * before.back();
   const auto next = std::upper_bound(before.begin(), before.end() - 1, place);
   const auto k = static_cast<std::size_t>(next - before.begin()) - 1;
-  const double of_lamp = before[k + 1] - before[k];
-  return {lamps[k], of_lamp / before.back(), std::clamp((place - before[k]) / of_lamp, 0.0, 1.0)};
+  const double of_emitter = before[k + 1] - before[k];
+  return {emitters[k], of_emitter / before.back(), std::clamp((place - before[k]) / of_emitter, 0.0, 1.0)};
 }
 
 double EmitterChoice::probability_of(PatchIndex patch) const {
-  const auto place = std::lower_bound(lamps.begin(), lamps.end(), patch);
-  if (place == lamps.end() || *place != patch) return 0;
-  const auto k = static_cast<std::size_t>(place - lamps.begin());
+  const auto place = std::lower_bound(emitters.begin(), emitters.end(), patch);
+  if (place == emitters.end() || *place != patch) return 0;
+  const auto k = static_cast<std::size_t>(place - emitters.begin());
   return (before[k + 1] - before[k]) / before.back();
 }
 
-EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
+EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& emitters,
                                  const Field& exitance) {
-  constexpr double least_cosine = 0.05;  // of a lamp whose centroid is below the horizon some may be above it
-  EmitterChoice choice{lamps, {0}};
-  for (const PatchIndex lamp : lamps) {
-    const Vector toward = mesh.centroid[lamp] - mesh.centroid[patch];
-    const double squared = toward.squaredNorm() + mesh.area[lamp];
+  constexpr double least_cosine = 0.05;  // of an emitter whose centroid is below the horizon some may be above it
+  EmitterChoice choice{emitters, {0}};
+  for (const PatchIndex emitter : emitters) {
+    const Vector toward = mesh.centroid[emitter] - mesh.centroid[patch];
+    const double squared = toward.squaredNorm() + mesh.area[emitter];
     const double distance = std::sqrt(squared);
     const double cosines = std::max(least_cosine, mesh.normal[patch].dot(toward) / distance) *
-                           std::max(least_cosine, -mesh.normal[lamp].dot(toward) / distance);
-    choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp] * cosines / squared);
+                           std::max(least_cosine, -mesh.normal[emitter].dot(toward) / distance);
+    choice.before.push_back(choice.before.back() +
+                            exitance.row(emitter).mean() * mesh.area[emitter] * cosines / squared);
   }
   return choice;
 }
 
-EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance) {
-  EmitterChoice choice{lamps, {0}};
-  for (const PatchIndex lamp : lamps)
-    choice.before.push_back(choice.before.back() + exitance.row(lamp).mean() * mesh.area[lamp]);
+EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& emitters, const Field& exitance) {
+  EmitterChoice choice{emitters, {0}};
+  for (const PatchIndex emitter : emitters)
+    choice.before.push_back(choice.before.back() + exitance.row(emitter).mean() * mesh.area[emitter]);
   return choice;
 }
 
@@ -75,7 +76,7 @@ int count_far(const PatchCorners& from, std::span<const Seen> seen) {
 
 class Gather {
  public:
-  // Lamps that are many patches are left to the rays over the hemisphere.
+  // Emitters that are many patches are left to the rays over the hemisphere.
   Gather(const SolvedPatches& patches, const RaysOfQuarters& rays)
       : mesh_(patches.mesh),
         occluder_(patches.occluder),
@@ -89,13 +90,13 @@ class Gather {
         from_no_patch_(patches.solved.problem.direct_irradiance),
         rays_(rays) {
     for (PatchIndex i = 0; i < mesh_.size(); ++i)
-      if ((exitance_.row(i) > 0).any()) lamps_.push_back(i);
-    const auto lamps = static_cast<double>(lamps_.size());
-    if (lamps > most_lamps * mesh_.size()) lamps_.clear();
-    if (!lamps_.empty()) sent_ -= exitance_;
-    // More evaluations of lamps at patches are not worth their time.
-    takes_by_flux_ = lamps * mesh_.size() > 2e7;
-    by_flux_ = choice_by_flux(mesh_, lamps_, exitance_);
+      if ((exitance_.row(i) > 0).any()) emitters_.push_back(i);
+    const auto emitters = static_cast<double>(emitters_.size());
+    if (emitters > most_emitters * mesh_.size()) emitters_.clear();
+    if (!emitters_.empty()) sent_ -= exitance_;
+    // More evaluations of emitters at patches are not worth their time.
+    takes_by_flux_ = emitters * mesh_.size() > 2e7;
+    by_flux_ = choice_by_flux(mesh_, emitters_, exitance_);
   }
 
   void at(PatchIndex patch, GatheredQuarters& into) const;
@@ -106,13 +107,13 @@ class Gather {
   }
   std::vector<Ray> hemisphere_rays(PatchIndex patch) const;
   std::vector<Seen> seen_along(PatchIndex patch, const std::vector<Ray>& rays) const;
-  Field straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const;
+  Field straight_from_emitters(PatchIndex patch, const std::vector<Ray>& rays) const;
   void add_hemisphere(PatchIndex patch, std::span<const Seen> seen, GatheredQuarters& into) const;
   bool may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hit) const;
-  bool finds_lamps(const Hit& hit) const;
-  double part_by_shadow_rays(const EmitterChoice& choice, PatchIndex lamp, double geometry) const;
-  double from_a_lamp(const EmitterChoice& choice, PatchIndex patch, const Point& point,
-                     const std::array<double, 4>& sample) const;
+  bool finds_emitters(const Hit& hit) const;
+  double part_by_shadow_rays(const EmitterChoice& choice, PatchIndex emitter, double geometry) const;
+  double from_an_emitter(const EmitterChoice& choice, PatchIndex patch, const Point& point,
+                         const std::array<double, 4>& sample) const;
   double from_hemisphere(const EmitterChoice& choice, PatchIndex patch, const Point& point, const Seen& seen) const;
   double more_at(PatchIndex patch, const Point& point, std::uint32_t key) const;
 
@@ -121,7 +122,7 @@ class Gather {
   Sights sights_;
   PatchLookup lookup_;
   std::vector<std::uint32_t> keys_;
-  std::vector<PatchIndex> lamps_;
+  std::vector<PatchIndex> emitters_;
   EmitterChoice by_flux_;
   bool takes_by_flux_ = false;  // everywhere
   const Eigen::VectorXd& covered_;
@@ -162,28 +163,28 @@ std::vector<Seen> Gather::seen_along(PatchIndex patch, const std::vector<Ray>& r
   return seen;
 }
 
-// E h F V / p for a lamp that is chosen with probability p: F is exact, and h is the share of the light that the lamp
-// holds back. One row for each ray, by its origin, those of the first quarter first. All quarters sample the same
-// points of the same lamps.
-Field Gather::straight_from_lamps(PatchIndex patch, const std::vector<Ray>& rays) const {
+// E h F V / p for an emitter that is chosen with probability p: F is exact, and h is the share of the light that the
+// emitter holds back. One row for each ray, by its origin, those of the first quarter first. All quarters sample the
+// same points of the same emitters.
+Field Gather::straight_from_emitters(PatchIndex patch, const std::vector<Ray>& rays) const {
   Field irradiance = Field::Zero(4 * Eigen::Index{rays_.rays}, exitance_.cols());
-  if (lamps_.empty()) return irradiance;
+  if (emitters_.empty()) return irradiance;
   const EmitterChoice for_patch =
-      takes_by_flux_ ? EmitterChoice{} : emitter_choice_for(mesh_, patch, lamps_, exitance_);
+      takes_by_flux_ ? EmitterChoice{} : emitter_choice_for(mesh_, patch, emitters_, exitance_);
   const EmitterChoice& choice = takes_by_flux_ ? by_flux_ : for_patch;
   const auto samples =
-      scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, stream::lamps_at_quarters));
+      scrambled_sobol(static_cast<std::uint32_t>(rays_.rays), seed_of(patch, stream::emitters_at_quarters));
   std::vector<Segment> segments;
   segments.reserve(rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const auto& sample = samples[k % samples.size()];
-    const auto [lamp, probability, u] = choice.at(sample[0]);
-    const PatchCorners corners = mesh_.corner_points(lamp);
-    const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
+    const auto [emitter, probability, u] = choice.at(sample[0]);
+    const PatchCorners corners = mesh_.corner_points(emitter);
+    const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[emitter], mesh_.side[emitter]);
     const double factor = point_to_polygon(rays[k].origin, mesh_.normal[patch], corners);
-    irradiance.row(static_cast<Eigen::Index>(k)) = factor * nonspecular / probability * exitance_.row(lamp);
+    irradiance.row(static_cast<Eigen::Index>(k)) = factor * nonspecular / probability * exitance_.row(emitter);
     const Point to = square_to_quad(corners.points, u, sample[1]);
-    segments.push_back({rays[k].origin, to, mesh_.polygon[patch], mesh_.polygon[lamp]});
+    segments.push_back({rays[k].origin, to, mesh_.polygon[patch], mesh_.polygon[emitter]});
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
   return irradiance.colwise() * Eigen::Map<const Eigen::ArrayXf>(arriving.data(), irradiance.rows()).cast<double>();
@@ -195,27 +196,27 @@ bool Gather::may_be_darker_there(PatchIndex patch, PatchIndex met, const Hit& hi
          hit.distance * hit.distance < longest_edge_squared(mesh_.corner_points(met));
 }
 
-// No ray to a lamp goes over mirrors: light of lamps over these is found with the rest.
-bool Gather::finds_lamps(const Hit& hit) const { return !lamps_.empty() && hit.reflections > 0; }
+// No ray to an emitter goes over mirrors: light of emitters over these is found with the rest.
+bool Gather::finds_emitters(const Hit& hit) const { return !emitters_.empty() && hit.reflections > 0; }
 
-// Shadow rays go to points of lamps with the density q_j / A_j, q_j the probability of lamp j, and rays over the
+// Shadow rays go to points of emitters with the density q_j / A_j, q_j the probability of emitter j, and rays over the
 // hemisphere meet these with the density G: the share of the former by the balance heuristic (Veach and Guibas 1995).
-double Gather::part_by_shadow_rays(const EmitterChoice& choice, PatchIndex lamp, double geometry) const {
-  const double density = choice.probability_of(lamp) / mesh_.area[lamp];
+double Gather::part_by_shadow_rays(const EmitterChoice& choice, PatchIndex emitter, double geometry) const {
+  const double density = choice.probability_of(emitter) / mesh_.area[emitter];
   return density / (density + geometry);
 }
 
-// E h G V / p summed over the bands, times its part, for a point of a lamp that is chosen with the density p.
-double Gather::from_a_lamp(const EmitterChoice& choice, PatchIndex patch, const Point& point,
-                           const std::array<double, 4>& sample) const {
-  const auto [lamp, probability, u] = choice.at(sample[2]);
-  const Point to = square_to_quad(mesh_.corner_points(lamp).points, u, sample[3]);
-  const double geometry = geometry_term(point, mesh_.normal[patch], to, mesh_.normal[lamp]);
+// E h G V / p summed over the bands, times its part, for a point of an emitter that is chosen with the density p.
+double Gather::from_an_emitter(const EmitterChoice& choice, PatchIndex patch, const Point& point,
+                               const std::array<double, 4>& sample) const {
+  const auto [emitter, probability, u] = choice.at(sample[2]);
+  const Point to = square_to_quad(mesh_.corner_points(emitter).points, u, sample[3]);
+  const double geometry = geometry_term(point, mesh_.normal[patch], to, mesh_.normal[emitter]);
   if (!(geometry > 0)) return 0;
-  const Segment segment{point, to, mesh_.polygon[patch], mesh_.polygon[lamp]};
-  const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[lamp], mesh_.side[lamp]);
-  return exitance_.row(lamp).sum() * nonspecular * geometry * mesh_.area[lamp] / probability *
-         part_by_shadow_rays(choice, lamp, geometry) *
+  const Segment segment{point, to, mesh_.polygon[patch], mesh_.polygon[emitter]};
+  const double nonspecular = occluder_.optics().nonspecular_fraction(mesh_.polygon[emitter], mesh_.side[emitter]);
+  return exitance_.row(emitter).sum() * nonspecular * geometry * mesh_.area[emitter] / probability *
+         part_by_shadow_rays(choice, emitter, geometry) *
          static_cast<double>(occluder_.transmittance({&segment, 1}).front());
 }
 
@@ -227,7 +228,7 @@ double Gather::from_hemisphere(const EmitterChoice& choice, PatchIndex patch, co
   const PatchIndex sender = lookup_.patches_at({&at, 1}).front();
   if (sender == no_patch) return 0;
   const double sent = sent_.row(sender).sum();
-  const double emitted = lamps_.empty() ? 0 : exitance_.row(sender).sum();
+  const double emitted = emitters_.empty() ? 0 : exitance_.row(sender).sum();
   if (!(emitted > 0)) return sent;
   // No shadow ray goes over mirrors.
   if (seen.met->reflections > 0) return sent + emitted;
@@ -239,15 +240,16 @@ double Gather::from_hemisphere(const EmitterChoice& choice, PatchIndex patch, co
 double Gather::more_at(PatchIndex patch, const Point& point, std::uint32_t key) const {
   constexpr std::uint32_t rays_from_point = 2;
   const double whole = irradiance_.row(patch).sum();
-  // With few lamps, each is weighed for each point.
-  const bool takes_by_flux = lamps_.empty() || lamps_.size() > 16;
-  const EmitterChoice for_patch = takes_by_flux ? EmitterChoice{} : emitter_choice_for(mesh_, patch, lamps_, exitance_);
+  // With few emitters, each is weighed for each point.
+  const bool takes_by_flux = emitters_.empty() || emitters_.size() > 16;
+  const EmitterChoice for_patch =
+      takes_by_flux ? EmitterChoice{} : emitter_choice_for(mesh_, patch, emitters_, exitance_);
   const EmitterChoice& choice = takes_by_flux ? by_flux_ : for_patch;
   const Eigen::Matrix3d frame = patch_frame(mesh_, patch);
   double there = 0;
   std::vector<Ray> rays;
   for (const auto& sample : scrambled_sobol(rays_from_point, key)) {
-    if (!lamps_.empty()) there += from_a_lamp(choice, patch, point, sample) / rays_from_point;
+    if (!emitters_.empty()) there += from_an_emitter(choice, patch, point, sample) / rays_from_point;
     rays.push_back({point,
                     frame * occluder_.optics().sample_nonspecular_direction(mesh_.polygon[patch], sample[0], sample[1]),
                     mesh_.polygon[patch]});
@@ -284,14 +286,14 @@ void Gather::add_hemisphere(PatchIndex patch, std::span<const Seen> seen, Gather
       into.seen_as[first * rays + k] = as_point(more_at(
           met[m], hit.point, hash({seed_of(patch, stream::points_at_quarters), static_cast<std::uint64_t>(k)})));
     into.irradiance.row(quarter) += sent_.row(met[m]);
-    if (finds_lamps(hit)) into.irradiance.row(quarter) += exitance_.row(met[m]);
+    if (finds_emitters(hit)) into.irradiance.row(quarter) += exitance_.row(met[m]);
   }
 }
 
 // The mean is over the exposed part: on a patch partly covered by solids, rays that hit backs start inside one.
 void Gather::at(PatchIndex patch, GatheredQuarters& into) const {
   const std::vector<Ray> rays = hemisphere_rays(patch);
-  const Field direct = straight_from_lamps(patch, rays);
+  const Field direct = straight_from_emitters(patch, rays);
   const std::vector<Seen> all_seen = seen_along(patch, rays);
   add_hemisphere(patch, all_seen, into);
   const auto count_of_one = static_cast<std::size_t>(rays_.rays);

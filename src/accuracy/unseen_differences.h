@@ -16,28 +16,28 @@ namespace patchlight {
 
 /// Emitting patches with cumulative fluxes, to choose one with a probability roughly proportional to its flux.
 struct EmitterChoice {
-  std::vector<PatchIndex> lamps;  ///< in the order of the mesh
-  std::vector<double> before;     ///< cumulative flux before each lamp, W; one more entry at the end
+  std::vector<PatchIndex> emitters;  ///< in the order of the mesh
+  std::vector<double> before;        ///< cumulative flux before each emitter, W; one more entry at the end
 
   struct Chosen {
-    PatchIndex lamp;
+    PatchIndex emitter;
     double probability;
     double u;  ///< the remaining random number after the choice, in [0, 1]
   };
 
-  /// The probability of a patch; 0 if it is not a lamp. O(log(lamps)).
+  /// The probability of a patch; 0 if it is not an emitter. O(log(emitters)).
   double probability_of(PatchIndex patch) const;
 
-  /// The lamp for a number in [0, 1). O(log(lamps)).
+  /// The emitter for a number in [0, 1). O(log(emitters)).
   Chosen at(double u) const;
 };
 
-/// Weighs lamps by their unoccluded flux to a patch; all have some probability. O(lamps).
-EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& lamps,
+/// Weighs emitters by their unoccluded flux to a patch; all have some probability. O(emitters).
+EmitterChoice emitter_choice_for(const PatchMesh& mesh, PatchIndex patch, const std::vector<PatchIndex>& emitters,
                                  const Field& exitance);
 
-/// Weighs lamps by their total flux. O(lamps).
-EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& lamps, const Field& exitance);
+/// Weighs emitters by their total flux. O(emitters).
+EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex>& emitters, const Field& exitance);
 
 class Occluder;
 
@@ -76,20 +76,20 @@ struct RaysOfQuarters {
 };
 
 /// Gathers light at the quarters of patches from a solution on the patches: reflected light along cosine-distributed
-/// rays, the light of lamps along the same number of shadow rays. The quarters of a patch use the same directions, so
-/// their differences have little noise. A patch counts as seen from afar beyond eight times its longest edge, where its
-/// quarters look alike. This applies if at least half of the receiver's hemisphere is open: into a niche or a slit,
+/// rays, the light of emitters along the same number of shadow rays. The quarters of a patch use the same directions,
+/// so their differences have little noise. A patch counts as seen from afar beyond eight times its longest edge, where
+/// its quarters look alike. This applies if at least half of the receiver's hemisphere is open: into a niche or a slit,
 /// only part of a patch may be visible.
 ///
 /// If a patch sees another with twice its irradiance, closer than the length of that one, light is gathered again at
-/// the point that was hit. Two rays and two shadow rays to lamps are combined by the balance heuristic (Veach and
+/// the point that was hit. Two rays and two shadow rays to emitters are combined by the balance heuristic (Veach and
 /// Guibas 1995). For example, a patch of a pipe through a wall may lie on both sides of it, with equal quarters.
 /// \throws Canceled.
 GatheredQuarters gather_at_quarters(const SolvedPatches& patches, const RaysOfQuarters& rays, const Observer& observer);
 
 /// Options of unseen_differences().
 struct QuarterLook {
-  int rays = 16;  ///< per quarter and half: hemisphere rays, and the same number towards lamps; a power of two
+  int rays = 16;  ///< per quarter and half: hemisphere rays, and the same number towards emitters; a power of two
   std::uint64_t seed = 1;
   std::array<Field, 2> direct = {};  ///< per quarter: irradiance by luminaires, sun and sky, W/m^2, computed twice with
                                      ///< different rays; empty without these

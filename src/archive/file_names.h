@@ -38,7 +38,7 @@ inline constexpr const char* hit_distance = "hit_distance.npy";
 inline constexpr const char* directed = "directed.npy";
 inline constexpr const char* lamps = "lamps.npy";
 inline constexpr std::array<const char*, 2> emitter_factors = {"lamp_factors_0.npy", "lamp_factors_1.npy"};
-inline constexpr const char* emitter_standard_error = "emitter_standard_error.npy";
+inline constexpr const char* emitter_standard_error = "lamp_standard_error.npy";
 
 /// The value of info.json's key "kind".
 inline constexpr const char* kind = "patchlight form factors";

@@ -326,7 +326,7 @@ void write_half(const std::filesystem::path& folder, std::size_t half, const Ray
 
 void write_lamps(const std::filesystem::path& folder, const RayExchange& exchange) {
   std::vector<std::int64_t> ranges;
-  for (const auto& [begin, end] : exchange.lamps) ranges.insert(ranges.end(), {begin, end});
+  for (const auto& [begin, end] : exchange.emitters) ranges.insert(ranges.end(), {begin, end});
   write_as<std::int64_t>(folder / file_name::lamps, ranges);
   const auto write = [&](const char* name, const EmitterValues& values) {
     const std::span<const float> all(values.data(), static_cast<std::size_t>(values.size()));
@@ -544,12 +544,13 @@ RayExchange read_ray_rows(const std::filesystem::path& folder, const FormFactorI
     refuse(folder / file_name::hit_distance, "a length that is below 0 or no number", "meters, not below 0");
   rows.directed = read_npy_bytes(folder / file_name::directed, patches);
   rows.rays = rows.halves[0].hits.size() + rows.halves[1].hits.size();
-  exchange.lamps = read_lamps(folder / file_name::lamps, mesh);
+  exchange.emitters = read_lamps(folder / file_name::lamps, mesh);
   EmitterFactors& factors = exchange.emitter_factors;
   for (std::size_t half = 0; half < 2; ++half)
     factors.halves.at(half) =
-        read_lamp_values(folder / file_name::emitter_factors.at(half), patches, exchange.lamps.size());
-  factors.standard_error = read_lamp_values(folder / file_name::emitter_standard_error, patches, exchange.lamps.size());
+        read_lamp_values(folder / file_name::emitter_factors.at(half), patches, exchange.emitters.size());
+  factors.standard_error =
+      read_lamp_values(folder / file_name::emitter_standard_error, patches, exchange.emitters.size());
   exchange.specular_kinds = std::move(kinds);
   return exchange;
 }

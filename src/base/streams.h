@@ -40,7 +40,7 @@ enum Stream : std::uint64_t {
   survival_of_path = 0x726f756c,
 
   // Quarters of patches
-  lamps_at_quarters = 1,
+  emitters_at_quarters = 1,
   clear_at_quarters = 2,
   points_at_quarters = 3,
   halves_of_quarters = 0x9a7,

@@ -110,8 +110,8 @@ Written write_rays(const FormFactorArguments& arguments, const Scene& scene, con
   std::ostringstream text;
   text << shown_name(scene.file) << ": " << found.mesh.size() << " patches with edges up to " << std::setprecision(3)
        << found.plan.max_edge << " m; " << found.exchange.rows.rays << " rays over hemispheres, "
-       << found.exchange.rows.shadow_rays << " towards bright patches, " << found.exchange.lamps.size()
-       << (found.exchange.lamps.size() == 1 ? " lamp" : " lamps") << " apart\n";
+       << found.exchange.rows.shadow_rays << " towards bright patches, " << found.exchange.emitters.size()
+       << (found.exchange.emitters.size() == 1 ? " lamp" : " lamps") << " apart\n";
   return {notes_on(arguments, scene, found), text.str()};
 }
 

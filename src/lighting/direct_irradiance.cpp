@@ -17,7 +17,6 @@
 #include <functional>
 #include <numeric>
 #include <optional>
-#include <variant>
 
 namespace patchlight {
 namespace {
@@ -370,7 +369,7 @@ Estimate Estimator::by_sky(const Receiver& receiver, std::uint32_t key, double e
   return found;
 }
 
-// By all sources. `number` chooses the random numbers of the receiver.
+// The estimate by all sources. The number of the receiver selects its random numbers.
 Estimate Estimator::at(const Receiver& receiver, std::uint64_t number, double effort) const {
   Estimate sum{Spectrum::Zero(lighting().bands), Spectrum::Zero(lighting().bands)};
   std::uint32_t source_number = 0;
@@ -439,10 +438,10 @@ DirectIrradiance straight_irradiance(const LightSampler& lights, std::span<const
 template <class Receivers>
 DirectIrradiance irradiance_of(const LightSampler& lights, const Receivers& receivers, const LightingOptions& options,
                                const Observer& observer) {
-  const bool in_mirrors = lights.lighting().mirrors != nullptr;
-  if (options.only_in_mirrors && in_mirrors) return irradiance_in_mirrors(lights, receivers, options, observer);
-  DirectIrradiance direct = straight_irradiance(lights, receivers, options, observer);
-  if (in_mirrors) add(direct, irradiance_in_mirrors(lights, receivers, options, observer));
+  const Field none = Field::Zero(static_cast<Eigen::Index>(receivers.size()), lights.lighting().bands);
+  DirectIrradiance direct{none, none};
+  if (!options.only_in_mirrors) direct = straight_irradiance(lights, receivers, options, observer);
+  if (lights.lighting().mirrors) add(direct, irradiance_in_mirrors(lights, receivers, options, observer));
   return direct;
 }
 

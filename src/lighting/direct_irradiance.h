@@ -17,9 +17,9 @@ namespace patchlight {
 struct LightingOptions {
   int luminaire_samples = 64;  ///< per luminaire; where they would be more than 16, none to a ball that nothing can
                                ///< hide; at a point those without extent take one
-  int sun_samples = 64;       ///< 64 times that where shadows are too many to be found by geometry; at a point one
-  int mirrored_samples = 64;  ///< per source and way over mirrors; 2 or more
-  int sky_samples = 512;      ///< directions; half of them towards panes, or half as many again towards holes
+  int sun_samples = 64;        ///< 64 times that where shadows are too many to be found by geometry; at a point one
+  int mirrored_samples = 64;   ///< per source and way over mirrors; 2 or more
+  int sky_samples = 512;       ///< directions; half of them towards panes, or half as many again towards holes
   std::uint64_t seed = 1;
   std::vector<double> areas = {};  ///< per patch: its importance, m^2; empty: its own area
   double usual_area = 0;           ///< area of the patch that takes just these numbers of rays, m^2; 0: the mean of all

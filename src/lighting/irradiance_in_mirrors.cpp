@@ -71,8 +71,8 @@ struct OverChains {
 
 struct MirrorSampler {
   const LightSampler& lights;
-  const Lighting& lighting;
-  std::vector<std::vector<std::array<double, 4>>> points;  // per replicate, the most that any takes
+  const Lighting& lighting = lights.lighting();
+  std::vector<std::vector<std::array<double, 4>>> points = {};  // per replicate, the most that any takes
 
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
@@ -226,7 +226,7 @@ struct MirrorReceivers {
 DirectIrradiance in_mirrors_at(const LightSampler& lights, const MirrorReceivers& all, const LightingOptions& options,
                                const Observer& observer) {
   const Lighting& lighting = lights.lighting();
-  MirrorSampler sampler{lights, lighting, {}};
+  MirrorSampler sampler{lights};
   const auto samples = std::bit_ceil(static_cast<std::uint32_t>(std::max(2, options.mirrored_samples)));
   const std::uint32_t replicates = std::clamp(samples / 2, 2U, 8U);
   const std::uint32_t of_each = samples / replicates;

@@ -29,7 +29,8 @@ const Spectrum& color_of(const WebLight& light) { return light.watts_per_lumen; 
 
 // E = I cos theta / d^2
 template <typename Light>
-LightSample sample_point(const Light& light, const Luminaire& luminaire, const Vector& up, const SurfacePoint& at) {
+LightSample sample_of_light(const Light& light, const Luminaire& luminaire, const Vector& up, const SurfacePoint& at,
+                            const Eigen::Vector2d&) {
   const Vector way = luminaire.position - at.point;
   const double square = way.squaredNorm();
   const double cosine = at.normal.dot(way) / std::sqrt(square);
@@ -39,9 +40,9 @@ LightSample sample_point(const Light& light, const Luminaire& luminaire, const V
 }
 
 // Directions are uniform in the solid angle of the sphere: Shirley, Wang and Zimmerman 1996, section 3.2.
-LightSample sample_sphere(const SphericalLamp& lamp, const Point& centre, const SurfacePoint& at,
-                          const Eigen::Vector2d& uv) {
-  const Vector way = centre - at.point;
+LightSample sample_of_light(const SphericalLamp& lamp, const Luminaire& luminaire, const Vector&,
+                            const SurfacePoint& at, const Eigen::Vector2d& uv) {
+  const Vector way = luminaire.position - at.point;
   const double distance = way.norm();
   if (distance <= lamp.radius) return {};
   // The sphere fills the cone with this half angle; 1 - cos without cancellation.
@@ -66,15 +67,21 @@ const SphericalLamp* sphere_of(const Luminaire& luminaire) { return std::get_if<
 
 std::size_t corner_count(const EmitterFace& face) { return face.corners[2] == face.corners[3] ? 3 : 4; }
 
-// Above 0 wherever each of face and point is before the other.
-double possible_irradiance_of(const EmitterFace& face, const SurfacePoint& at) {
+double form_factor_of(const EmitterFace& face, const SurfacePoint& at) {
+  return point_to_polygon(at.point, at.normal, std::span(face.corners.data(), corner_count(face)));
+}
+
+// Above 0 if the point is in front of the face and a part of the face is above the horizon.
+double possible_irradiance_of(const EmitterFace& face, const Ball& ball, const SurfacePoint& at) {
   double rise = 0;
   for (const Point& corner : face.corners) rise = std::max(rise, at.normal.dot(corner - at.point));
   const double before = face.normal.dot(at.point - face.corners[0]);
   if (!(rise > 0 && before > 0)) return 0;
-  const Point middle = (face.corners[0] + face.corners[1] + face.corners[2] + face.corners[3]) / 4;
-  const double square = (middle - at.point).squaredNorm() + face.area;
-  return face.exitance.mean() * face.area * rise * before / (std::numbers::pi * square * square);
+  const double square = (ball.centre - at.point).squaredNorm() + face.area;
+  const double far = face.area * rise * before / (std::numbers::pi * square * square);
+  // The estimate from afar is too small before the end of a long face.
+  const bool is_near = square < 9 * ball.radius * ball.radius;
+  return face.exitance.mean() * (is_near ? std::max(far, form_factor_of(face, at)) : far);
 }
 
 // The irradiance of a surface that faces the sphere, where any of it is above the horizon.
@@ -113,23 +120,9 @@ std::vector<EmitterFace> emitter_faces(const Scene& scene, PolygonIndex polygon,
   const Spectrum& exitance = scene.materials[material_on(scene.polygons[polygon], side)].exitance;
   const Vector normal = (side == Side::front ? 1 : -1) * front_normal(scene, polygon);
   std::vector<EmitterFace> faces;
-  if (corners.size() == 4 && is_convex(corners)) {
-    faces.push_back(
-        {{corners[0], corners[1], corners[2], corners[3]}, normal, area_vector(corners).norm(), polygon, exitance});
-    return faces;
-  }
-  for (const auto& [a, b, c] : triangles_of(corners))
-    faces.push_back({{a, b, c, c}, normal, (b - a).cross(c - a).norm() / 2, polygon, exitance});
+  for (const std::array<Point, 4>& piece : convex_pieces(corners))
+    faces.push_back({piece, normal, area_vector(piece).norm(), polygon, exitance});
   return faces;
-}
-
-LightSample sample_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at,
-                             const Eigen::Vector2d& uv) {
-  if (const SphericalLamp* const sphere = sphere_of(luminaire))
-    return sample_sphere(*sphere, luminaire.position, at, uv);
-  if (const auto* point = std::get_if<PointLight>(&luminaire.light)) return sample_point(*point, luminaire, up, at);
-  if (const auto* spot = std::get_if<SpotLight>(&luminaire.light)) return sample_point(*spot, luminaire, up, at);
-  return sample_point(std::get<WebLight>(luminaire.light), luminaire, up, at);
 }
 
 LightSource::LightSource(const Luminaire& luminaire, const Vector& up, std::uint32_t id)
@@ -150,7 +143,9 @@ LightSource::LightSource(EmitterFace face, std::uint32_t id)
       of_(OfFace{face, QuadPoints(face.corners)}) {}
 
 LightSample LightSource::sample_of(const OfLuminaire& source, const SurfacePoint& at, const Eigen::Vector2d& uv) const {
-  return sample_luminaire(*source.luminaire, source.up, at, uv);
+  const Luminaire& luminaire = *source.luminaire;
+  const auto by = [&](const auto& light) { return sample_of_light(light, luminaire, source.up, at, uv); };
+  return std::visit(by, luminaire.light);
 }
 
 LightSample LightSource::sample_of(const OfSun& source, const SurfacePoint& at, const Eigen::Vector2d&) const {
@@ -179,8 +174,7 @@ LightSample LightSource::sample(const SurfacePoint& at, const Eigen::Vector2d& u
 std::optional<double> LightSource::unoccluded(const SurfacePoint& at) const {
   const auto* const of_face = std::get_if<OfFace>(&of_);
   if (of_face == nullptr) return std::nullopt;
-  const EmitterFace& face = of_face->face;
-  return point_to_polygon(at.point, at.normal, std::span(face.corners.data(), corner_count(face)));
+  return form_factor_of(of_face->face, at);
 }
 
 double LightSource::possible_irradiance(const SurfacePoint& at) const {
@@ -188,7 +182,8 @@ double LightSource::possible_irradiance(const SurfacePoint& at) const {
     const LightSample arriving = sample(at, {0.5, 0.5});
     return arriving.irradiance > 0 ? arriving.irradiance * arriving.color->mean() : 0;
   }
-  if (const auto* const of_face = std::get_if<OfFace>(&of_)) return possible_irradiance_of(of_face->face, at);
+  if (const auto* const of_face = std::get_if<OfFace>(&of_))
+    return possible_irradiance_of(of_face->face, extent_.ball, at);
   return possible_irradiance_of(*sphere_of(*std::get<OfLuminaire>(of_).luminaire), extent_.ball, at);
 }
 
@@ -203,38 +198,41 @@ LightSampler::LightSampler(const Lighting& lighting, std::vector<EmitterFace> fa
   }
 }
 
-std::vector<SourceChoice> LightSampler::choose(const SurfacePoint& at, std::uint32_t rays, double u) const {
+void LightSampler::choose_among(bool are_delta, std::span<const double> weights, std::uint32_t rays, double u,
+                                std::vector<SourceChoice>& chosen) const {
   constexpr std::size_t few_sources = 4;
-  constexpr std::uint32_t rays_with_extent = 2;
-  std::vector<SourceChoice> chosen;
-  std::vector<double> weights(sources_.size(), 0);
+  const std::uint32_t least = are_delta ? 1 : 2;
+  std::vector<double> of_kind(weights.begin(), weights.end());
   double sum = 0;
-  std::size_t lit_by = 0;
-  std::uint32_t rays_each = 1;
+  std::uint32_t lit_by = 0;
+  for (std::size_t k = 0; k < of_kind.size(); ++k) {
+    if (sources_[k].is_delta() != are_delta) of_kind[k] = 0;
+    sum += of_kind[k];
+    lit_by += of_kind[k] > 0 ? 1 : 0;
+  }
+  if (lit_by == 0) return;
+  if (lit_by <= few_sources) {
+    const std::uint32_t each = are_delta ? 1 : std::max(least, rays / lit_by);
+    for (std::uint32_t k = 0; k < of_kind.size(); ++k)
+      if (of_kind[k] > 0) chosen.push_back({k, each, 1});
+    return;
+  }
+  const std::uint32_t count = std::max<std::uint32_t>(1, rays / least);
+  for (const std::size_t k : choose_evenly(of_kind, sum, count, u))
+    chosen.push_back({static_cast<std::uint32_t>(k), least, sum / (of_kind[k] * count)});
+}
+
+std::vector<SourceChoice> LightSampler::choose(const SurfacePoint& at, std::uint32_t rays, double u) const {
+  std::vector<SourceChoice> chosen;
+  std::vector<double> weights;
+  weights.reserve(sources_.size());
   for (std::uint32_t k = 0; k < sources_.size(); ++k) {
     const double possible = sources_[k].possible_irradiance(at);
-    if (!(possible > 0)) continue;
-    if (sources_[k].extent().direction) {
-      chosen.push_back({k, 1, 1});
-      continue;
-    }
-    weights[k] = possible;
-    sum += possible;
-    ++lit_by;
-    if (!sources_[k].is_delta()) rays_each = rays_with_extent;
+    const bool is_sun = sources_[k].extent().direction.has_value();
+    if (is_sun && possible > 0) chosen.push_back({k, 1, 1});
+    weights.push_back(is_sun ? 0 : possible);
   }
-  const auto rays_of = [&](std::size_t k, std::uint32_t with_extent) {
-    return sources_[k].is_delta() ? 1 : with_extent;
-  };
-  if (lit_by <= few_sources) {
-    const std::uint32_t each = lit_by > 0 ? std::max(rays_with_extent, rays / static_cast<std::uint32_t>(lit_by)) : 0;
-    for (std::uint32_t k = 0; k < sources_.size(); ++k)
-      if (weights[k] > 0) chosen.push_back({k, rays_of(k, each), 1});
-    return chosen;
-  }
-  const std::uint32_t count = std::max<std::uint32_t>(1, rays / rays_each);
-  for (const std::size_t k : choose_evenly(weights, sum, count, u))
-    chosen.push_back({static_cast<std::uint32_t>(k), rays_of(k, rays_each), sum / (weights[k] * count)});
+  for (const bool are_delta : {true, false}) choose_among(are_delta, weights, rays, u, chosen);
   return chosen;
 }
 

@@ -15,7 +15,7 @@
 
 namespace patchlight {
 
-/// A ball around everything.
+/// All points up to a distance from a center, meters.
 struct Ball {
   Point centre = Point::Zero();
   double radius = 0;
@@ -40,7 +40,7 @@ std::vector<EmitterFace> emitter_faces(const Scene& scene, PolygonIndex polygon,
 struct LightSample {
   Point from = Point::Zero();         ///< a point of the source, or one beyond the scene
   PolygonIndex polygon = no_polygon;  ///< of an emitter face
-  double irradiance = 0;              ///< for a color of 1, W/m^2; 0: none
+  double irradiance = 0;              ///< times the color: W/m^2; 0: none
   const Spectrum* color = nullptr;    ///< lives as long as the source
 };
 
@@ -48,11 +48,6 @@ struct LightSample {
 inline Segment segment_to(const LightSample& sample, const SurfacePoint& at) {
   return {at.point, sample.from, at.polygon, sample.polygon};
 }
-
-/// A sample of a luminaire for (u, v) of the unit square; only a sphere has more than one point. `up` tells the tilt of
-/// luminaires whose flux depends on it. Points inside of a sphere get nothing.
-LightSample sample_luminaire(const Luminaire& luminaire, const Vector& up, const SurfacePoint& at,
-                             const Eigen::Vector2d& uv);
 
 /// Where a source is: in a direction, or in a ball.
 struct SourceExtent {
@@ -64,7 +59,8 @@ struct SourceExtent {
 /// occluders. Refers to the luminaire or lighting that it is made from.
 class LightSource {
  public:
-  LightSource(const Luminaire& luminaire, const Vector& up, std::uint32_t id);
+  /// `up` is the vertical axis, as the flux of some luminaires depends on their tilt.
+  LightSource(const Luminaire& luminaire, const Vector& up, std::uint32_t id = 0);
   LightSource(const Lighting& lighting, const Sun& sun, std::uint32_t id);
   LightSource(EmitterFace face, std::uint32_t id);
 
@@ -76,12 +72,14 @@ class LightSource {
   /// True if light comes from one point or direction.
   bool is_delta() const { return is_delta_; }
 
+  /// The light from one point of the source, for (u, v) of the unit square. Points inside of a sphere get nothing.
   LightSample sample(const SurfacePoint& at, const Eigen::Vector2d& uv) const;
 
-  /// The irradiance without occluders by an emitter face in closed form, for a color of 1; nothing for other sources.
+  /// The irradiance without occluders by an emitter face in closed form, relative to its exitance; nothing for other
+  /// sources.
   std::optional<double> unoccluded(const SurfacePoint& at) const;
 
-  /// An estimate of the irradiance without occluders, mean of the bands. It is 0 only where no light arrives.
+  /// An estimate of the irradiance without occluders, mean of the bands, W/m^2. It is 0 only where no light arrives.
   double possible_irradiance(const SurfacePoint& at) const;
 
  private:
@@ -129,11 +127,15 @@ class LightSampler {
   /// Luminaires and the sun.
   std::span<const LightSource> without_faces() const { return std::span(sources_).first(without_faces_); }
 
-  /// Chooses sources for a point by possible_irradiance(), with about `rays` shadow rays in all; sources with extent
-  /// get two or more. The sun always gets one, and so do all sources where they are few. `u` of [0, 1) is random.
+  /// Chooses sources for a point by possible_irradiance(): about `rays` shadow rays among those without extent, one
+  /// each, and as many among the others, two or more each. The sun always gets one. Up to four of a kind all get rays.
+  /// The sum of factor times irradiance, as a mean over u of [0, 1), is that of all sources.
   std::vector<SourceChoice> choose(const SurfacePoint& at, std::uint32_t rays, double u) const;
 
  private:
+  void choose_among(bool are_delta, std::span<const double> weights, std::uint32_t rays, double u,
+                    std::vector<SourceChoice>& chosen) const;
+
   const Lighting* lighting_;
   std::vector<LightSource> sources_;
   std::size_t without_faces_ = 0;

@@ -6,7 +6,6 @@
 #include "lighting/sky.h"
 #include "lighting/sky_openings.h"
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <vector>

@@ -10,12 +10,19 @@
 #include <numbers>
 #include <set>
 #include <utility>
-#include <variant>
 
 namespace patchlight {
 namespace {
 
 constexpr std::size_t most_chains = 1024;
+
+// Each receiver samples every source by each chain that may lead to it.
+constexpr std::size_t most_sources_of_chains = 4096;
+
+// The work of the search: a beam that is clipped to a side counts 1, about 0.4 us, and its flux 16 more. Single mirrors
+// may take as much again.
+constexpr std::size_t most_work = 5'000'000;
+constexpr std::size_t work_of_flux = 16;
 
 // Directions of equal flux of a source: they resolve narrow sources, and points of a mirror resolve small mirrors.
 constexpr int directions_of_source = 64;
@@ -276,11 +283,14 @@ class ChainSearch {
   MirrorChains run();
 
  private:
-  QueuedChain continued(const QueuedChain& before, std::size_t side) const;
+  void rank_sources();
+  QueuedChain continued(const QueuedChain& before, std::size_t side);
   double share_of(const Beam& beam) const { return beam.flux.mean() / sources_[beam.source].flux.mean(); }
   void add(QueuedChain candidate);
+  void add_single();
   double add_longer(const QueuedChain& candidate);
   void leave_out(const QueuedChain& candidate, const Beam& beam);
+  void leave_out_longer(const QueuedChain& candidate);
 
   double tolerance_;
   std::vector<MirrorSide> sides_;
@@ -289,7 +299,9 @@ class ChainSearch {
   std::vector<SourceFlux> sources_;
   std::vector<std::array<double, 4>> points_ = scrambled_sobol(16, 1);  // of a mirror
   double most_reflectance_ = 0;
+  std::size_t work_ = 0;
   double reflected_ = 0;        // W, straight from the sources, mean of the bands
+  double unranked_ = 0;         // W, flux of the sources that are not ranked
   std::vector<Spectrum> left_;  // W, from each side
   std::set<QueuedChain> queue_;
   std::size_t number_ = 0;
@@ -305,15 +317,31 @@ ChainSearch::ChainSearch(const Scene& scene, std::span<const LightSource> source
     most_reflectance_ = std::max(most_reflectance_, side.reflectance);
   }
   left_.assign(sides_.size(), Spectrum::Zero(bands));
-  for (const LightSource& source : sources) {
-    sources_.push_back(flux_of(source, bands));
-    found_.ranked.push_back(source.id());
+  for (const LightSource& source : sources) sources_.push_back(flux_of(source, bands));
+  rank_sources();
+}
+
+// The sun and the strongest sources, as many as there is work for. No face of a polygon is ranked without the others.
+void ChainSearch::rank_sources() {
+  const auto rank = [](const SourceFlux& light) {
+    return std::pair(!light.source->extent().direction, -light.flux.mean());
+  };
+  std::stable_sort(sources_.begin(), sources_.end(),
+                   [&](const SourceFlux& a, const SourceFlux& b) { return rank(a) < rank(b); });
+  const std::size_t work_of_source = (1 + work_of_flux) * std::max<std::size_t>(1, sides_.size());
+  const std::size_t most = std::min(sources_.size(), std::max<std::size_t>(1, most_work / work_of_source));
+  std::set<std::uint32_t> ranked;
+  for (std::size_t k = 0; k < most; ++k) ranked.insert(sources_[k].source->id());
+  for (std::size_t k = most; k < sources_.size(); ++k) {
+    ranked.erase(sources_[k].source->id());
+    unranked_ += sources_[k].flux.mean();
   }
-  std::sort(found_.ranked.begin(), found_.ranked.end());
+  sources_.resize(most);
+  found_.ranked.assign(ranked.begin(), ranked.end());
 }
 
 // With one mirror more, nearest to the receiver; and the beams that get there.
-QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number) const {
+QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number) {
   const MirrorSide& side = sides_[number];
   QueuedChain longer;
   longer.chain = before.chain;
@@ -324,10 +352,12 @@ QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number
   for (const Beam& beam : before.beams) {
     const SourceFlux& light = sources_[beam.source];
     const SourceExtent seen = image_of(light.source->extent(), before.chain.image);
+    ++work_;
     if (!is_lit_from(side, seen)) continue;
     std::vector<Point> section = hulls_[number];
     if (!beam.section.empty()) section = lit_part(std::move(section), before.chain.mirrors.front(), beam.section, seen);
     if (section.empty()) continue;
+    work_ += work_of_flux;
     const Spectrum by_points = flux_by_points(light, seen, section, side, before.chain.image, points_);
     const Spectrum by_directions = flux_by_directions(light, seen, section, side, before.chain.image);
     longer.beams.push_back({beam.source, std::move(section), by_points.max(by_directions)});
@@ -339,6 +369,13 @@ QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number
 void ChainSearch::leave_out(const QueuedChain& candidate, const Beam& beam) {
   const double all = 1 + light_beyond(candidate.chain.mirrors.size(), most_reflectance_);
   left_[candidate.first] += all * candidate.chain.reflectance * beam.flux;
+}
+
+// The chains that continue one that is followed itself.
+void ChainSearch::leave_out_longer(const QueuedChain& candidate) {
+  found_.is_cut = true;
+  const double longer = light_beyond(candidate.chain.mirrors.size(), most_reflectance_);
+  for (const Beam& beam : candidate.beams) left_[candidate.first] += longer * candidate.chain.reflectance * beam.flux;
 }
 
 // Beams with less than 1e-7 of the flux of their source are not followed. No more chains wait than may be followed yet:
@@ -364,26 +401,31 @@ void ChainSearch::add(QueuedChain candidate) {
   queue_.erase(last);
 }
 
-// The same with one mirror more. Returns the highest reflectance of one with which it is too long to be followed.
+// The same with one mirror more, as far as there is work left. Returns the highest reflectance of one with which it is
+// too long to be followed.
 double ChainSearch::add_longer(const QueuedChain& candidate) {
   const MirrorSide& first = sides_[candidate.first];
   double too_long = 0;
+  bool is_complete = true;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const MirrorSide& side = sides_[k];
     if (!has_corner_before(corners_[k], first, tolerance_)) continue;
     if (!has_corner_before(corners_[candidate.first], side, tolerance_)) continue;
     const bool is_followed = candidate.chain.mirrors.size() < most_mirrors &&
                              candidate.chain.reflectance * side.reflectance >= least_reflectance;
-    if (is_followed)
+    if (!is_followed)
+      too_long = std::max(too_long, side.reflectance);
+    else if (work_ < most_work)
       add(continued(candidate, k));
     else
-      too_long = std::max(too_long, side.reflectance);
+      is_complete = false;
   }
+  if (!is_complete) leave_out_longer(candidate);
   return too_long;
 }
 
 // Light of all sources that goes to each side of a mirror.
-MirrorChains ChainSearch::run() {
+void ChainSearch::add_single() {
   QueuedChain straight;
   for (std::size_t k = 0; k < sources_.size(); ++k) straight.beams.push_back({k, {}, sources_[k].flux});
   std::vector<QueuedChain> single;
@@ -396,17 +438,34 @@ MirrorChains ChainSearch::run() {
     }
   }
   for (QueuedChain& candidate : single) add(std::move(candidate));
+  work_ = 0;
+}
+
+MirrorChains ChainSearch::run() {
+  add_single();
+  std::size_t pairs = 0;
   while (!queue_.empty()) {
     QueuedChain next = std::move(queue_.extract(queue_.begin()).value());
+    if (pairs + next.beams.size() > most_sources_of_chains) {
+      found_.is_cut = true;
+      for (const Beam& beam : next.beams) leave_out(next, beam);
+      continue;
+    }
+    pairs += next.beams.size();
     for (const Beam& beam : next.beams) next.chain.sources.push_back(sources_[beam.source].source->id());
     std::sort(next.chain.sources.begin(), next.chain.sources.end());
     found_.chains.push_back(next.chain);
     found_.chains.back().beyond = light_beyond(next.chain.mirrors.size(), add_longer(next));
   }
+  // Light of sources that are not ranked is left out to the same extent.
+  double ranked = 0;
+  for (const SourceFlux& light : sources_) ranked += light.flux.mean();
+  const double all = ranked > 0 ? 1 + unranked_ / ranked : 1;
   double left = 0;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     if (!(left_[k] > 0).any()) continue;
     left += left_[k].mean();
+    left_[k] *= all;
     found_.unfollowed.push_back({corners_[k], left_[k] / area_vector(corners_[k]).norm()});
   }
   found_.unfollowed_share = reflected_ > 0 ? left / reflected_ : 0;

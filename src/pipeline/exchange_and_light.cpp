@@ -25,80 +25,81 @@ namespace {
 // Sums over all bands, per patch.
 Eigen::VectorXd summed_over_bands(const Field& field) { return field.rowwise().sum().matrix(); }
 
-// The factors of lamps, the patches of a side each, by the clear faces of the run.
-EmitterFactors factors_of_emitters(std::span<const PatchRange> lamps, const Run& run, const Plan& plan,
+// The factors of emitters, the patches of a side each, by the clear faces of the run.
+EmitterFactors factors_of_emitters(std::span<const PatchRange> emitters, const Run& run, const Plan& plan,
                                    const PatchMesh& mesh) {
   std::vector<EmitterSide> sides;
-  for (const PatchRange& lamp : lamps) sides.push_back({mesh.polygon[lamp.begin], mesh.side[lamp.begin]});
+  for (const PatchRange& emitter : emitters) sides.push_back({mesh.polygon[emitter.begin], mesh.side[emitter.begin]});
   return emitter_factors(run.scene, mesh, run.world->between_patches(), sides,
                          {.rays = plan.assembly.rays, .seed = plan.assembly.seed}, run.observer);
 }
 
-// The factors of the separate lamps, without rows.
+// The factors of the separate emitters, without rows.
 RayExchange traced_emitters(const Run& run, const Plan& plan, const PatchMesh& mesh, const RadiosityProblem& problem) {
   RayExchange found;
-  for (const EmitterSide& lamp : select_emitters(run.scene, mesh, problem, max_emitter_pieces(run.world->tracing())))
-    found.lamps.push_back(mesh.patches_on(lamp.polygon, lamp.side));
-  found.emitter_factors = factors_of_emitters(found.lamps, run, plan, mesh);
+  for (const EmitterSide& emitter : select_emitters(run.scene, mesh, problem, max_emitter_pieces(run.world->tracing())))
+    found.emitters.push_back(mesh.patches_on(emitter.polygon, emitter.side));
+  found.emitter_factors = factors_of_emitters(found.emitters, run, plan, mesh);
   return found;
 }
 
-// Lamps that are bright now, but were neither separate nor bright when the rows were traced: rays would miss most of
+// Emitters that are bright now, but were neither separate nor bright when the rows were traced: rays would miss most of
 // their light.
 std::vector<PatchRange> new_emitters(const Run& run, const PatchMesh& mesh, const RadiosityProblem& problem,
                                      const RayExchange& known) {
-  std::vector<PatchRange> lamps;
+  std::vector<PatchRange> emitters;
   std::size_t pieces = 0;
-  for (const EmitterSide& lamp : select_emitters(run.scene, mesh, problem, std::numeric_limits<std::size_t>::max())) {
-    const PatchRange patches = mesh.patches_on(lamp.polygon, lamp.side);
+  for (const EmitterSide& emitter :
+       select_emitters(run.scene, mesh, problem, std::numeric_limits<std::size_t>::max())) {
+    const PatchRange patches = mesh.patches_on(emitter.polygon, emitter.side);
     const auto is_same = [&](const PatchRange& one) { return one.begin == patches.begin; };
-    const bool is_apart = std::any_of(known.lamps.begin(), known.lamps.end(), is_same);
+    const bool is_apart = std::any_of(known.emitters.begin(), known.emitters.end(), is_same);
     if (is_apart || known.rows.directed[patches.begin] != 0) continue;
-    lamps.push_back(patches);
-    pieces += piece_count(run.scene, lamp);
+    emitters.push_back(patches);
+    pieces += piece_count(run.scene, emitter);
   }
   if (pieces > 64)
-    throw InputError("given.ray_rows",
-                     "too many lamps were dark when these form factors were computed: " + std::to_string(lamps.size()) +
-                         "\nhint: compute them again with these lamps lit");
-  return lamps;
+    throw InputError("given.ray_rows", "too many lamps were dark when these form factors were computed: " +
+                                           std::to_string(emitters.size()) +
+                                           "\nhint: compute them again with these lamps lit");
+  return emitters;
 }
 
-// Another lamp, whose factors are columns of their own.
+// Another emitter, whose factors are columns of their own.
 EmitterValues joined(const EmitterValues& some, const EmitterValues& more) {
   EmitterValues all(more.rows(), some.cols() + more.cols());
   all << some, more;
   return all;
 }
 
-// With the factors of lamps that are bright, and were dark when the rows were traced; of all lamps where there are
-// clear faces or mirrors, which may have other colors now.
+// With the factors of emitters that are bright, and were dark when the rows were traced; of all emitters where there
+// are clear faces or mirrors, which may have other colors now.
 RayExchange with_emitters(RayExchange known, const Run& run, const Plan& plan, const PatchMesh& mesh,
                           const RadiosityProblem& problem) {
-  const std::vector<PatchRange> lamps = new_emitters(run, mesh, problem, known);
-  known.lamps.insert(known.lamps.end(), lamps.begin(), lamps.end());
+  const std::vector<PatchRange> emitters = new_emitters(run, mesh, problem, known);
+  known.emitters.insert(known.emitters.end(), emitters.begin(), emitters.end());
   EmitterFactors& factors = known.emitter_factors;
   if (run.world->tracing().has_specular_surfaces() || !known.specular_kinds.empty()) {
-    factors = factors_of_emitters(known.lamps, run, plan, mesh);
-  } else if (!lamps.empty()) {
-    const EmitterFactors more = factors_of_emitters(lamps, run, plan, mesh);
+    factors = factors_of_emitters(known.emitters, run, plan, mesh);
+  } else if (!emitters.empty()) {
+    const EmitterFactors more = factors_of_emitters(emitters, run, plan, mesh);
     for (std::size_t half = 0; half < 2; ++half) factors.halves[half] = joined(factors.halves[half], more.halves[half]);
     factors.standard_error = joined(factors.standard_error, more.standard_error);
   }
   return known;
 }
 
-// The irradiance by separate lamps over mirrors and clear faces, which their factors do not include; empty if
+// The irradiance by separate emitters over mirrors and clear faces, which their factors do not include; empty if
 // reflections are not followed.
 DirectIrradiance emitters_in_mirrors(const Run& run, const LightingOptions& options, const PatchMesh& mesh,
-                                     const std::vector<PatchRange>& lamps) {
-  if (lamps.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
+                                     const std::vector<PatchRange>& emitters) {
+  if (emitters.empty() || run.world->tracing().reflections() == Reflections::kept) return {};
   const Lighting& lighting = run.world->lighting_by_polygons();
   if (!lighting.mirrors) return {};
   std::vector<EmitterFace> faces;
-  for (const PatchRange& patches : lamps) {
-    const auto of_lamp = emitter_faces(run.scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
-    faces.insert(faces.end(), of_lamp.begin(), of_lamp.end());
+  for (const PatchRange& patches : emitters) {
+    const auto of_emitter = emitter_faces(run.scene, mesh.polygon[patches.begin], mesh.side[patches.begin]);
+    faces.insert(faces.end(), of_emitter.begin(), of_emitter.end());
   }
   return direct_irradiance({lighting, std::move(faces)}, mesh, options, run.observer);
 }
@@ -122,20 +123,20 @@ int times_for_all(const Known& known) {
   return static_cast<int>(std::bit_floor(static_cast<unsigned>(mean)));
 }
 
-// H = F_lamps E_lamps for factors of one value per patch and lamp.
+// H = F_lamps E_lamps for factors of one value per patch and emitter.
 Field irradiance_by(const EmitterValues& factors, const Field& exitance) {
   return (factors.cast<double>().matrix() * exitance.matrix()).array();
 }
 
-// The light of the separate lamps, as means over whole patches.
+// The light of the separate emitters, as means over whole patches.
 RayLight light_of(const RayExchange& exchange, LitProblem lit, PatchIndex patches) {
   RayLight light;
   light.lit = std::move(lit);
   const RadiosityProblem& problem = light.lit.problem;
   light.is_apart.assign(patches, 0);
-  Field exitance(static_cast<Eigen::Index>(exchange.lamps.size()), problem.exitance.cols());
-  for (std::size_t k = 0; k < exchange.lamps.size(); ++k) {
-    const auto [begin, end] = exchange.lamps[k];
+  Field exitance(static_cast<Eigen::Index>(exchange.emitters.size()), problem.exitance.cols());
+  for (std::size_t k = 0; k < exchange.emitters.size(); ++k) {
+    const auto [begin, end] = exchange.emitters[k];
     exitance.row(static_cast<Eigen::Index>(k)) = problem.exitance.row(begin);
     std::fill(light.is_apart.begin() + begin, light.is_apart.begin() + end, 1);
   }
@@ -245,17 +246,17 @@ Field direct_of(const RayLight& light) {
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known) {
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit = lit_problem(run, plan, mesh, area, known);
-  Plan to_lamps = plan;
-  to_lamps.assembly.rays *= times_for_all(known);
+  Plan to_emitters = plan;
+  to_emitters.assembly.rays *= times_for_all(known);
   const bool is_known = static_cast<bool>(run.with.ray_exchange);
   RayExchange exchange = is_known ? with_emitters(run.with.ray_exchange(mesh), run, plan, mesh, lit.problem)
-                                  : traced_emitters(run, to_lamps, mesh, lit.problem);
+                                  : traced_emitters(run, to_emitters, mesh, lit.problem);
   RayLight light = light_of(exchange, std::move(lit), mesh.size());
   // Its error counts with the rows.
   LightingOptions over_mirrors = lighting_options(plan, mesh);
   over_mirrors.seed = seed_on(known, over_mirrors.seed);
   over_mirrors.doublings = known.more_rays.of_rows;
-  light.in_mirrors = emitters_in_mirrors(run, over_mirrors, mesh, exchange.lamps);
+  light.in_mirrors = emitters_in_mirrors(run, over_mirrors, mesh, exchange.emitters);
   if (!is_known) {
     exchange.rows = traced_rows(run, plan, mesh, light, known);
     if (run.world->tracing().has_specular_surfaces())
@@ -274,9 +275,9 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
 
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
                            const Plan& plan, const PatchMesh& mesh) {
-  // 1. Light straight from lamps, also through clear faces.
+  // 1. Light straight from emitters, also through clear faces.
   ExchangeAndLight found{all.exchange, {}};
-  found.exchange.emitter_factors = factors_of_emitters(all.exchange.lamps, part, plan, mesh);
+  found.exchange.emitter_factors = factors_of_emitters(all.exchange.emitters, part, plan, mesh);
 
   // 2. Other light is known of each band.
   const RayLight& light = all.light;

@@ -23,17 +23,18 @@ inline constexpr double explicit_emitter_ratio = 4;
 std::vector<EmitterSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
                                          std::size_t max_pieces);
 
-/// The number of pieces beside rows of rays, and at sensors: 16, or 64 with mirrors, in which rays rarely find lamps.
+/// The number of pieces beside rows of rays, and at sensors: 16, or 64 with mirrors, in which rays rarely find
+/// emitters.
 std::size_t max_emitter_pieces(const Tracing& tracing);
 
-/// The light that goes with rows of rays. The light of lamps is computed separately: few rays of a row meet a small
+/// The light that goes with rows of rays. The light of emitters is computed separately: few rays of a row meet a small
 /// bright source, and smoothing would blur its shadows.
 struct RayLight {
   LitProblem lit;                      ///< the problem of lit_problem(), with the full exitance
   std::vector<std::uint8_t> is_apart;  ///< per patch: 1 if its exitance counts in by_emitters, not in rows
-  std::array<Field, 2> by_emitters;    ///< direct irradiance by separate lamps, by both halves of the samples, W/m^2
+  std::array<Field, 2> by_emitters;    ///< direct irradiance by separate emitters, by both halves of the samples, W/m^2
   Field emitter_standard_error;        ///< of its mean, W/m^2
-  /// Irradiance by the same lamps over mirrors and clear faces; empty where there are none.
+  /// Irradiance by the same emitters over mirrors and clear faces; empty where there are none.
   DirectIrradiance in_mirrors;
   std::vector<float> distance;          ///< TracedRows::distance
   std::vector<std::uint8_t> is_missed;  ///< per patch: 1 if it is bright and known rows did not sample it directly
@@ -49,16 +50,16 @@ struct ExchangeAndLight {
 };
 
 /// Traces rows and computes the light of select_emitters(). Light that all surfaces emit alike, and the light of many
-/// lamps, stays in the rows, which also sample bright patches directly. Uses Steps::ray_exchange if given; lamps that
-/// it does not know are sampled by shadow rays. \throws Canceled; InputError when these are too many.
+/// emitters, stays in the rows, which also sample bright patches directly. Uses Steps::ray_exchange if given; emitters
+/// that it does not know are sampled by shadow rays. \throws Canceled; InputError when these are too many.
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});
 
-/// The same in some of the bands, by the run `part` that has only these. Rows are the same; the light that lamps send
-/// straight through clear faces is computed again.
+/// The same in some of the bands, by the run `part` that has only these. Rows are the same; the light that emitters
+/// send straight through clear faces is computed again.
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,
                            const Plan& plan, const PatchMesh& mesh);
 
-/// The exitance of patches without the separate lamps, W/m^2.
+/// The exitance of patches without the separate emitters, W/m^2.
 Field emitted_in_rows(const RayLight& light);
 
 /// The irradiance by all light outside the rows, W/m^2.

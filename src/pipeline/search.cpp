@@ -103,7 +103,7 @@ std::optional<MeshToSolve> next_mesh_by_rays(SolvedMesh& solved, std::span<const
 Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
   Eigen::VectorXd noise = solved.noise;
   const RadiosityProblem& problem = solved.simulation.problem;
-  if (4 * share_of_lamps(problem) < most_lamps) return noise;
+  if (4 * share_of_emitters(problem) < most_emitters) return noise;
   for (PatchIndex i = 0; i < solved.mesh.patches.size(); ++i) {
     if ((problem.exitance.row(i) > 0).any()) noise[solved.mesh.parent[i]] = 0;
   }

@@ -101,9 +101,9 @@ Field squares_in(const SolvedBands& bands, const Field& error) { return reduced(
 
 // B = E + rho o H for light that is reflected once. H is the irradiance by separate lamps plus the light of other
 // emitters in the rows.
-ConservingSolution reflected_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
+ConservingSolution gathered_once(const RaysWithPockets& transport, const RadiosityProblem& problem) {
   std::array<Field, 2> gathered = gathered_by_halves(transport, problem.exitance);
-  Solution solution = patchlight::reflected_once(problem, mean_of(gathered) + problem.direct_irradiance);
+  Solution solution = reflected_once(problem, mean_of(gathered) + problem.direct_irradiance);
   solution.history = {{.work = 1}};
   return {std::move(solution), {}, std::move(gathered)};
 }
@@ -374,7 +374,7 @@ RaySolution solve_with_rays(const Run& run, const PatchMesh& mesh, const RaysWit
   auto [solution, flux, halves] =
       reflects_twice ? conserving_flux(transport, problem, solve(transport, problem, options, observer), facts.row_sum,
                                        without_iterates(run.observer))
-                     : reflected_once(transport, problem);
+                     : gathered_once(transport, problem);
 
   // 2. Gather once more.
   const GatheredLight gathered = gathered_light({mesh, transport, light, needed, facts},

@@ -108,7 +108,7 @@ SamplingErrors sampling_errors(const Run& run, const Simulation& simulation, con
   const Field& B = needed.solution.radiosity;
   const Field& E = needed.problem.exitance;
   SamplingErrors found;
-  if (share_of_lamps(needed.problem) > most_lamps) {
+  if (share_of_emitters(needed.problem) > most_emitters) {
     found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B);
     found.error = mean_square(found.draws).sqrt();
   } else {
@@ -284,7 +284,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
 
 }  // namespace
 
-double share_of_lamps(const RadiosityProblem& problem) {
+double share_of_emitters(const RadiosityProblem& problem) {
   return static_cast<double>((problem.exitance > 0).rowwise().any().count()) /
          static_cast<double>(problem.exitance.rows());
 }

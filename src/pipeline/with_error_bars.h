@@ -10,6 +10,6 @@ namespace patchlight {
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport);
 
 /// The fraction of patches that emit.
-double share_of_lamps(const RadiosityProblem& problem);
+double share_of_emitters(const RadiosityProblem& problem);
 
 }  // namespace patchlight

@@ -182,9 +182,9 @@ Diagnostics notes_on_luminaires_behind(const Scene& scene) {
       if (std::abs(height) > 1.001e-3 || is_opening(scene, p)) continue;  // a millimeter, rounded
       const std::string trouble = trouble_at(luminaire, height, normal, nearest);
       if (trouble.empty() || !lies_over(luminaire.position, corner_points(scene, p), normal)) continue;
-      notes.push_back({DiagnosticCode::misplaced_luminaire,
-                       "luminaire '" + luminaire.name + "' (" + luminaire.place + ") lies " + trouble + " (" +
-                           place_of(scene, scene.polygons[p]) + "); move it if this is not intended"});
+      notes.push_back({DiagnosticCode::misplaced_luminaire, "luminaire '" + luminaire.name + "' (" + luminaire.place +
+                                                                ") lies " + trouble + " (" +
+                                                                place_of(scene, scene.polygons[p]) + "); move it"});
       break;
     }
   }

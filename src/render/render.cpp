@@ -83,7 +83,7 @@ SeenLuminaire seen_opening(const Luminaire& luminaire, const std::shared_ptr<con
   const auto radiance = [luminaire, web, frame, up](const Vector& direction) -> Spectrum {
     // E at 1 m is I
     const LightSample arrival =
-        sample_luminaire(luminaire, up, {luminaire.position + direction, -direction}, Eigen::Vector2d::Zero());
+        LightSource(luminaire, up).sample({luminaire.position + direction, -direction}, Eigen::Vector2d::Zero());
     const double area = projected_opening(*web, frame, direction);
     return *arrival.color * (area > 0 ? arrival.irradiance / area : 0);
   };

@@ -304,4 +304,15 @@ std::vector<IndexTriangle> triangulate(std::span<const Point> polygon) {
   return polygon.size() <= 32 ? triangles_of_few(polygon) : EarClipping(polygon).triangles();
 }
 
+std::vector<std::array<Point, 4>> convex_pieces(std::span<const Point> polygon) {
+  const Vector normal = area_vector(polygon);
+  bool is_convex = polygon.size() == 4;
+  for (std::size_t k = 0; is_convex && k < 4; ++k)
+    is_convex = turn(normal, polygon[k], polygon[(k + 1) % 4], polygon[(k + 2) % 4]) > 0;
+  if (is_convex) return {{polygon[0], polygon[1], polygon[2], polygon[3]}};
+  std::vector<std::array<Point, 4>> pieces;
+  for (const auto& [a, b, c] : triangles_of(polygon)) pieces.push_back({a, b, c, c});
+  return pieces;
+}
+
 }  // namespace patchlight

@@ -29,6 +29,10 @@ Point inner_point(std::span<const Point> polygon);
 double common_area(std::span<const Triangle> some, std::span<const Triangle> others, const Vector& normal,
                    double enough = std::numeric_limits<double>::infinity());
 
+/// The polygon in triangles, with their last corner twice, or as it is if it is a quadrilateral with four corners that
+/// turn outward; with its orientation.
+std::vector<std::array<Point, 4>> convex_pieces(std::span<const Point> polygon);
+
 /// True when no corner of the planar polygon turns inward.
 bool is_convex(std::span<const Point> polygon);
 

@@ -168,16 +168,13 @@ Solution solution_by(Solver solver, Iterations iterations, const RowTransport* r
   return {};
 }
 
-// The transport with single rows, if it has them.
-const RowTransport* rows_of(const TransportOperator& transport, Solver solver) {
-  const auto* const rows = transport.rows();
-  if (rows == nullptr && takes_rows(solver)) {
-    throw InputError(name_of(solver),
-                     "takes single rows of the form factors, which cannot be had as they are kept here; expected a "
-                     "solver that takes none, as " +
-                         std::string(transport.is_reciprocal() ? "cg" : "gmres"));
-  }
-  return rows;
+void require_rows(const TransportOperator& transport, Solver solver) {
+  if (transport.rows() != nullptr || !takes_rows(solver)) return;
+  throw InputError(
+      name_of(solver),
+      "takes single rows of the form factors, which cannot be had as they are kept here; expected a solver "
+      "that takes none, as " +
+          std::string(transport.is_reciprocal() ? "cg" : "gmres"));
 }
 
 // Conjugate gradients rest on A_i F_ij = A_j F_ji.
@@ -256,8 +253,7 @@ Solution solution_of(const TransportOperator& transport, const RadiosityProblem&
   std::string trapped = known && !closed_are_dark ? trapped_light(transport, problem) : std::string();
   if (!trapped.empty()) return lamps_alone(transport, problem, std::move(trapped));
   if (pockets != nullptr) return solved_around(transport, *pockets, closed_are_dark, problem, options, observer);
-  return solution_by(options.solver, Iterations(transport, problem, options, observer),
-                     rows_of(transport, options.solver));
+  return solution_by(options.solver, Iterations(transport, problem, options, observer), transport.rows());
 }
 
 }  // namespace
@@ -308,7 +304,7 @@ Solution solve(const TransportOperator& transport, const RadiosityProblem& probl
   assert(problem.scattering.reflectance.rows() == problem.exitance.rows() &&
          problem.scattering.reflectance.cols() == problem.exitance.cols());
 
-  rows_of(transport, options.solver);
+  require_rows(transport, options.solver);
   require_reciprocity(transport, options.solver);
   require_diagonal(problem.scattering, options.solver);
 

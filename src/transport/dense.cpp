@@ -38,7 +38,10 @@ const Pockets* TransportOperator::pockets(const Eigen::ArrayXd&) const { return 
 
 Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage,
                              const Observer& observer) {
-  if (transport.rows() == nullptr && (exitance > 0).any()) return transport.apply(exitance);
+  if (transport.rows() == nullptr && (exitance > 0).any()) {
+    if (observer && !observer({.stage = stage})) throw Canceled();
+    return transport.apply(exitance);
+  }
   Field H = Field::Zero(exitance.rows(), exitance.cols());
   for (const PatchRange& range : emitter_ranges(exitance)) {
     if (observer && !observer({.stage = stage})) throw Canceled();

@@ -13,59 +13,39 @@
 namespace patchlight {
 namespace {
 
-// A triangle or convex quadrilateral of a lamp.
+// A triangle or convex quadrilateral of an emitter.
 struct EmitterPiece {
   PatchShape shape;
   SampledPatch sampled;
-  double nonspecular = 1;  // the share of arriving light that is neither transmitted nor mirrored
-  std::uint32_t key = 0;   // chooses random points
-  std::size_t lamp = 0;    // which of the lamps it belongs to
+  double nonspecular = 1;   // the share of arriving light that is neither transmitted nor mirrored
+  std::uint32_t key = 0;    // chooses random points
+  std::size_t emitter = 0;  // which of the emitters it belongs to
 };
 
-PatchCorners turned(PatchCorners corners) {
-  std::reverse(corners.points.begin(), corners.points.begin() + corners.count);
-  if (corners.count == 3) corners.points[3] = corners.points[2];
-  return corners;
-}
-
-bool is_convex_quadrilateral(const std::vector<Point>& points) {
-  const Vector normal = area_vector(points);
-  bool is_convex = points.size() == 4;
-  for (std::size_t k = 0; is_convex && k < 4; ++k) {
-    const Vector edge = points[(k + 1) % 4] - points[k];
-    is_convex = edge.cross(points[(k + 2) % 4] - points[(k + 1) % 4]).dot(normal) > 0;
-  }
-  return is_convex;
-}
-
-// Counter-clockwise from the side that shines.
-std::vector<PatchCorners> pieces_of(const Scene& scene, const EmitterSide& lamp) {
-  const std::vector<Point> points = corner_points(scene, lamp.polygon);
+// Counter-clockwise from the emitting side.
+std::vector<PatchCorners> pieces_of(const Scene& scene, const EmitterSide& emitter) {
+  std::vector<Point> points = corner_points(scene, emitter.polygon);
+  if (emitter.side == Side::back) std::reverse(points.begin(), points.end());
   std::vector<PatchCorners> pieces;
-  if (is_convex_quadrilateral(points)) {
-    pieces.push_back({{points[0], points[1], points[2], points[3]}, 4});
-  } else {
-    for (const auto& [a, b, c] : triangulate(points))
-      pieces.push_back({{points[a], points[b], points[c], points[c]}, 3});
-  }
-  if (lamp.side == Side::back)
-    for (PatchCorners& piece : pieces) piece = turned(piece);
+  for (const std::array<Point, 4>& piece : convex_pieces(points))
+    pieces.push_back({piece, piece[2] == piece[3] ? 3 : 4});
   return pieces;
 }
 
-// The pieces of all lamps, one lamp after the other. `keys` of the mesh's patches, patch_keys().
+// The pieces of all emitters, one emitter after the other. `keys` of the mesh's patches, patch_keys().
 std::vector<EmitterPiece> emitter_pieces(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                                         std::span<const EmitterSide> lamps, const std::vector<std::uint32_t>& keys) {
+                                         std::span<const EmitterSide> emitters,
+                                         const std::vector<std::uint32_t>& keys) {
   std::vector<EmitterPiece> pieces;
-  for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp) {
-    const auto& [polygon, side] = lamps[lamp];
+  for (std::size_t emitter = 0; emitter < emitters.size(); ++emitter) {
+    const auto& [polygon, side] = emitters[emitter];
     const PatchRange patches = mesh.patches_on(polygon, side);
     std::uint32_t key = patches.begin < patches.end ? keys[patches.begin] : 0;
-    for (const PatchCorners& corners : pieces_of(scene, lamps[lamp])) {
+    for (const PatchCorners& corners : pieces_of(scene, emitters[emitter])) {
       const PatchShape shape = patch_shape(corners);
       key = hash(key);
       pieces.push_back({shape, sampled_patch(shape, polygon, occluder.frame()),
-                        occluder.optics().nonspecular_fraction(polygon, side), key, lamp});
+                        occluder.optics().nonspecular_fraction(polygon, side), key, emitter});
     }
   }
   return pieces;
@@ -167,7 +147,7 @@ void EmitterSampler::trace(EmitterRays& rays, const SampledPatch& patch, const E
 }
 
 // docs/theory/occluded-form-factors.md, formula (5), as PairSampler::exchange_area(); U is the form factor without
-// occluders, w_k = A G_k with the area of the lamp's piece. It is at most `most`.
+// occluders, w_k = A G_k with the area of the emitter's piece. It is at most `most`.
 double form_factor_by(const EmitterRays& rays, double U, double area, double most) {
   const double share = rays.visible_share();
   if (share == 0) return 0;
@@ -240,7 +220,7 @@ void sample_patch(const EmitterSampler& sampler, PatchIndex i, EmitterFactors& f
     const double difference = 0.5 * (pair.form_factor[0] - pair.form_factor[1]);
     values.unoccluded(i, column) = static_cast<float>(pair.unoccluded);
     for (std::size_t half = 0; half < 2; ++half) {
-      factors.halves[half](i, static_cast<Eigen::Index>(piece.lamp)) += static_cast<float>(pair.form_factor[half]);
+      factors.halves[half](i, static_cast<Eigen::Index>(piece.emitter)) += static_cast<float>(pair.form_factor[half]);
       values.bin[half](i, column) = pair.bin[half];
       task.pool.add(pair.bin[half], difference * difference, pair.unoccluded * pair.unoccluded);
     }
@@ -249,15 +229,15 @@ void sample_patch(const EmitterSampler& sampler, PatchIndex i, EmitterFactors& f
 
 // The variances of the means of both halves, by the visible shares that either half has found.
 EmitterValues standard_errors(const EmitterSampler& sampler, const PieceValues& values, const Pool& pool,
-                              Eigen::Index lamps) {
-  EmitterValues squares = EmitterValues::Zero(values.unoccluded.rows(), lamps);
+                              Eigen::Index emitters) {
+  EmitterValues squares = EmitterValues::Zero(values.unoccluded.rows(), emitters);
   for (Eigen::Index i = 0; i < squares.rows(); ++i) {
     for (std::size_t k = 0; k < sampler.pieces.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       const auto bin = [&](std::size_t half) { return values.bin[half](i, column); };
       const double variance = 0.5 * (pool.variance(bin(0)) + pool.variance(bin(1)));
       const auto U = static_cast<double>(values.unoccluded(i, column));
-      squares(i, static_cast<Eigen::Index>(sampler.pieces[k].lamp)) += static_cast<float>(variance * U * U);
+      squares(i, static_cast<Eigen::Index>(sampler.pieces[k].emitter)) += static_cast<float>(variance * U * U);
     }
   }
   return squares.sqrt();
@@ -265,23 +245,23 @@ EmitterValues standard_errors(const EmitterSampler& sampler, const PieceValues& 
 
 }  // namespace
 
-std::size_t piece_count(const Scene& scene, const EmitterSide& lamp) { return pieces_of(scene, lamp).size(); }
+std::size_t piece_count(const Scene& scene, const EmitterSide& emitter) { return pieces_of(scene, emitter).size(); }
 
 EmitterFactors emitter_factors(const Scene& scene, const PatchMesh& mesh, const Occluder& occluder,
-                               std::span<const EmitterSide> lamps, const EmitterSampling& sampling,
+                               std::span<const EmitterSide> emitters, const EmitterSampling& sampling,
                                const Observer& observer) {
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const std::uint32_t usual = usual_rays(sampling);
   const EmitterSampler sampler{mesh,
                                occluder,
-                               emitter_pieces(scene, mesh, occluder, lamps, keys),
+                               emitter_pieces(scene, mesh, occluder, emitters, keys),
                                keys,
                                usual,
                                SampleTable(4 * usual, hash({sampling.seed, stream::points_on_emitters})),
                                occluder.can_occlude(),
                                occluder.frame().scale};
   const auto rows = static_cast<Eigen::Index>(mesh.size());
-  const auto count = static_cast<Eigen::Index>(lamps.size());
+  const auto count = static_cast<Eigen::Index>(emitters.size());
   const auto pieces = static_cast<Eigen::Index>(sampler.pieces.size());
   EmitterFactors factors;
   for (EmitterValues& half : factors.halves) half = EmitterValues::Zero(rows, count);

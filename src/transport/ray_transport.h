@@ -17,12 +17,12 @@
 namespace patchlight {
 
 /// The exchange between the patches of a mesh, by rows of rays. Geometry alone decides the form factors. The light at
-/// the time of tracing decides which lamps are separate and which bright patches rays sample directly. Other light has
-/// more noise.
+/// the time of tracing decides which emitters are separate and which bright patches rays sample directly. Other light
+/// has more noise.
 struct RayExchange {
   TracedRows rows;
-  std::vector<PatchRange> lamps;   ///< separate lamps: the patches of one side each, with equal emission
-  EmitterFactors emitter_factors;  ///< per patch and lamp
+  std::vector<PatchRange> emitters;  ///< separate emitters: the patches of one side each, with equal emission
+  EmitterFactors emitter_factors;    ///< per patch and lamp
   /// SurfaceOptics::kinds() of the polygons at the time of tracing; empty if none is specular.
   std::vector<std::array<double, 2>> specular_kinds = {};
 };

@@ -73,7 +73,7 @@ std::vector<GlareSource> luminaire_glare(const Scene& scene, const Occluder& fac
     if (!light || !(way.dot(forward) > 0)) continue;
     const Vector towards = way / distance;
     const double area = projected_opening(*light->web, {luminaire.aim, luminaire.zero_plane}, towards);
-    const LightSample arrival = sample_luminaire(luminaire, scene.up, {eye, towards}, Eigen::Vector2d::Zero());
+    const LightSample arrival = LightSource(luminaire, scene.up).sample({eye, towards}, Eigen::Vector2d::Zero());
     if (!(area > 0 && arrival.irradiance > 0)) continue;
     // I = E d^2 of a plane that faces the luminaire
     const Spectrum intensity = arrival.irradiance * (distance * distance) * *arrival.color;

@@ -56,7 +56,8 @@ class CompareTest(ToolTest):
 
     def test_the_spectral_radius_is_that_of_the_room_whatever_lights_it(self):
         _, by_lamp = self.compare("--solvers", "cg")
-        self.write("lit.toml", '[[model]]\nfile = "room.obj"\n[[luminaire]]\nkind = "point"\nposition = [0.5, 0.5, 0.5]\nlumens = 800\n')
+        self.write("lit.toml", '[[model]]\nfile = "room.obj"\n'
+                   '[[luminaire]]\nkind = "point"\nposition = [0.5, 0.5, 0.5]\nlumens = 800\n')
         _, by_luminaire = self.compare("--solvers", "cg", "--set", "lamp.exitance=0", out="lit", model="lit.toml")
         self.assertGreater(by_luminaire["spectral_radius"], 0)
         self.assertAlmostEqual(by_luminaire["spectral_radius"] / by_lamp["spectral_radius"], 1, 3)

@@ -28,7 +28,8 @@ class TransportOperator {
   virtual const Pockets* pockets(const Eigen::ArrayXd& reflectance) const;
 };
 
-/// F E by the rows of emitting patches alone, or by one application if the transport has no rows. \throws Canceled.
+/// F E, W/m^2, by the rows of emitting patches alone, or by one application if the transport has no rows. \throws
+/// Canceled.
 Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage = Stage::solve,
                              const Observer& observer = {});
 

@@ -149,7 +149,10 @@ void RadianceModifiers::define(const RadiancePrimitive& primitive, const std::st
   // An alias keeps the modifier of its original unless it has its own.
   const std::optional<std::size_t> under = place_of(primitive.modifier);
   modifier.under = under.value_or(modifier.under);
-  modifier.is_under_unknown = modifier.is_under_unknown || (!under && primitive.modifier != "void");
+  if (under)
+    modifier.is_under_unknown = false;
+  else if (primitive.modifier != "void" && primitive.modifier != "inherit")
+    modifier.is_under_unknown = true;
   last_[primitive.name] = all_.size();
   all_.push_back(std::move(modifier));
 }
@@ -164,12 +167,19 @@ std::size_t RadianceModifiers::material_below(std::size_t place) const {
   return place;
 }
 
-bool RadianceModifiers::has_pattern(std::size_t place) const {
-  for (;;) {
+bool RadianceModifiers::varies_in_strength(std::size_t place) const {
+  for (;; place = all_[place].under) {
     const RadianceModifier& modifier = all_[place];
-    if (is_pattern(modifier) || modifier.is_under_unknown) return true;
+    const bool is_texture = modifier.kind == "texdata" || modifier.kind == "texfunc";
+    if ((is_pattern(modifier) && !is_texture) || modifier.is_under_unknown) return true;
     if (modifier.under == place) return false;
-    place = modifier.under;
+  }
+}
+
+bool RadianceModifiers::has_pattern(std::size_t place) const {
+  for (;; place = all_[place].under) {
+    if (is_pattern(all_[place]) || all_[place].is_under_unknown) return true;
+    if (all_[place].under == place) return false;
   }
 }
 

@@ -71,6 +71,9 @@ class RadianceModifiers {
   /// True for a pattern or texture, and for a material below one or below an undefined modifier.
   bool has_pattern(std::size_t place) const;
 
+  /// The same without textures, which turn normals only: the emission varies.
+  bool varies_in_strength(std::size_t place) const;
+
  private:
   std::vector<RadianceModifier> all_;
   std::map<std::string, std::size_t, std::less<>> last_;

@@ -368,11 +368,11 @@ class RadianceReader {
       else
         left_out_.add(sentence, modifier.name);
     }
-    if (modifiers_.has_pattern(place) && (material->material.exitance > 0).any()) {
+    if (modifiers_.varies_in_strength(place) && (material->material.exitance > 0).any()) {
       // Its flux is unknown: ies2rad scales the distribution of a luminaire by the numbers of its light.
       left_out_.lose(
-          "lights with a pattern, as ies2rad writes them, emit nothing: give their IES files as [[luminaire]] of kind "
-          "\"ies\" in a scene file",
+          "lights below a pattern, e.g. by ies2rad, emit nothing: give IES files as [[luminaire]] of kind \"ies\" in a "
+          "scene file",
           modifier.name);
       material->material.exitance.setZero();
     }
@@ -412,7 +412,7 @@ class RadianceReader {
     FarSource source = far_source(primitive, frame.placement.linear(), where);
     if (light.kind != "light" && light.kind != "glow" && light.kind != "illum") return;
     source.radiance = rgb(light.numbers[0], light.numbers[1], light.numbers[2]);
-    source.has_pattern = modifiers_.has_pattern(*modifier);
+    source.has_pattern = modifiers_.varies_in_strength(*modifier);
     sources_.push_back(std::move(source));
   }
 

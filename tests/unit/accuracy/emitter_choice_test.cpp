@@ -12,58 +12,58 @@ namespace {
 
 using namespace test;
 
-// All patches of a box of 1 x 2 x 3 m are lamps. They differ in exitance and area.
-struct Lamps {
+// All patches of a box of 1 x 2 x 3 m are emitters. They differ in exitance and area.
+struct Emitters {
   PatchMesh mesh;
   std::vector<PatchIndex> all;
   Field exitance;
 };
 
-Lamps all_of_a_box() {
+Emitters all_of_a_box() {
   const Scene scene = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 2, 3), true);
-  Lamps lamps{tessellate(scene, kept_sides(scene, Sides::front), 0.7), {}, {}};
-  for (PatchIndex i = 0; i < lamps.mesh.size(); ++i) lamps.all.push_back(i);
-  lamps.exitance = Eigen::ArrayXd::LinSpaced(lamps.mesh.size(), 1, 3);
-  return lamps;
+  Emitters emitters{tessellate(scene, kept_sides(scene, Sides::front), 0.7), {}, {}};
+  for (PatchIndex i = 0; i < emitters.mesh.size(); ++i) emitters.all.push_back(i);
+  emitters.exitance = Eigen::ArrayXd::LinSpaced(emitters.mesh.size(), 1, 3);
+  return emitters;
 }
 
-// at() inverts the distribution. For n evenly spaced numbers of [0, 1), n q to within one choose a lamp of probability
-// q. The remainder of the number rises from 0 to 1 within each lamp.
-void expect_chosen_as_told(const EmitterChoice& choice, const std::vector<PatchIndex>& lamps) {
+// at() inverts the distribution. For n evenly spaced numbers of [0, 1), n q to within one choose an emitter of
+// probability q. The remainder of the number rises from 0 to 1 within each emitter.
+void expect_chosen_as_told(const EmitterChoice& choice, const std::vector<PatchIndex>& emitters) {
   constexpr int count = 100'000;
-  std::vector<int> chosen(lamps.size(), 0);
+  std::vector<int> chosen(emitters.size(), 0);
   EmitterChoice::Chosen before{no_patch, 0, 0};
   for (int k = 0; k < count; ++k) {
     const EmitterChoice::Chosen now = choice.at((k + 0.5) / count);
-    ++chosen[now.lamp];
-    EXPECT_DOUBLE_EQ(now.probability, choice.probability_of(now.lamp));
+    ++chosen[now.emitter];
+    EXPECT_DOUBLE_EQ(now.probability, choice.probability_of(now.emitter));
     EXPECT_TRUE(now.u >= 0 && now.u <= 1) << now.u;
-    EXPECT_TRUE(now.lamp != before.lamp || now.u > before.u) << k;
+    EXPECT_TRUE(now.emitter != before.emitter || now.u > before.u) << k;
     before = now;
   }
   double sum = 0;
-  for (const PatchIndex lamp : lamps) {
-    const double q = choice.probability_of(lamp);
-    EXPECT_GT(q, 0) << "a lamp that is never chosen is missed";
-    EXPECT_NEAR(chosen[lamp], count * q, 1 + 1e-6);
+  for (const PatchIndex emitter : emitters) {
+    const double q = choice.probability_of(emitter);
+    EXPECT_GT(q, 0) << "an emitter that is never chosen is missed";
+    EXPECT_NEAR(chosen[emitter], count * q, 1 + 1e-6);
     sum += q;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
 TEST(EmitterChoice, FollowsItsProbabilities) {
-  const Lamps lamps = all_of_a_box();
-  expect_chosen_as_told(choice_by_flux(lamps.mesh, lamps.all, lamps.exitance), lamps.all);
-  expect_chosen_as_told(emitter_choice_for(lamps.mesh, 0, lamps.all, lamps.exitance), lamps.all);
+  const Emitters emitters = all_of_a_box();
+  expect_chosen_as_told(choice_by_flux(emitters.mesh, emitters.all, emitters.exitance), emitters.all);
+  expect_chosen_as_told(emitter_choice_for(emitters.mesh, 0, emitters.all, emitters.exitance), emitters.all);
 }
 
 TEST(EmitterChoice, ByFluxGoesWithAreaTimesExitance) {
-  const Lamps lamps = all_of_a_box();
-  const EmitterChoice choice = choice_by_flux(lamps.mesh, lamps.all, lamps.exitance);
-  const PatchIndex last = lamps.mesh.size() - 1;
-  ASSERT_GT(std::abs(lamps.mesh.area[last] / lamps.mesh.area[0] - 1), 0.01) << "else the areas are not looked at";
-  const double flux_first = lamps.mesh.area[0] * lamps.exitance(0);
-  const double flux_last = lamps.mesh.area[last] * lamps.exitance(last);
+  const Emitters emitters = all_of_a_box();
+  const EmitterChoice choice = choice_by_flux(emitters.mesh, emitters.all, emitters.exitance);
+  const PatchIndex last = emitters.mesh.size() - 1;
+  ASSERT_GT(std::abs(emitters.mesh.area[last] / emitters.mesh.area[0] - 1), 0.01) << "else the areas are not looked at";
+  const double flux_first = emitters.mesh.area[0] * emitters.exitance(0);
+  const double flux_last = emitters.mesh.area[last] * emitters.exitance(last);
   EXPECT_NEAR(choice.probability_of(last) / choice.probability_of(0), flux_last / flux_first, 1e-12);
 }
 
@@ -84,13 +84,13 @@ TEST(EmitterChoice, GoesWithWhatIsSentWithNothingInTheWay) {
 }
 
 TEST(EmitterChoice, OtherPatchesAreNeverChosen) {
-  const Lamps lamps = all_of_a_box();
-  const EmitterChoice choice = choice_by_flux(lamps.mesh, {3, 7}, lamps.exitance);
+  const Emitters emitters = all_of_a_box();
+  const EmitterChoice choice = choice_by_flux(emitters.mesh, {3, 7}, emitters.exitance);
   EXPECT_EQ(choice.probability_of(2), 0);
   EXPECT_EQ(choice.probability_of(5), 0);
   EXPECT_EQ(choice.probability_of(8), 0);
-  EXPECT_EQ(choice.at(0).lamp, 3U);
-  EXPECT_EQ(choice.at(0x1.fffffffffffffp-1).lamp, 7U) << "the largest number below 1";
+  EXPECT_EQ(choice.at(0).emitter, 3U);
+  EXPECT_EQ(choice.at(0x1.fffffffffffffp-1).emitter, 7U) << "the largest number below 1";
 }
 
 }  // namespace

@@ -218,8 +218,8 @@ TEST_F(RayRowFiles, ThatCannotBeAreRefused) {
   expect_refused([&] { overwrite<double>("hit_weight_0.npy", patches, 3, infinite); });
   expect_refused([&] { overwrite<float>("entries_0.npy", entries, 0, 1e30F); });
   expect_refused([&] { overwrite<float>("entries_0.npy", entries, 0, -1); });
-  expect_refused([&] { overwrite<std::int64_t>("lamps.npy", 2 * found_.exchange.lamps.size(), 0, -7); });
-  expect_refused([&] { overwrite<float>("lamp_factors_1.npy", patches * found_.exchange.lamps.size(), 0, 1e30F); });
+  expect_refused([&] { overwrite<std::int64_t>("lamps.npy", 2 * found_.exchange.emitters.size(), 0, -7); });
+  expect_refused([&] { overwrite<float>("lamp_factors_1.npy", patches * found_.exchange.emitters.size(), 0, 1e30F); });
   expect_refused([&] { overwrite<float>("hit_distance.npy", patches, 0, -1); });
   expect_refused([&] { fs::remove(place_ / "entries_1.npy"); });
 }

@@ -235,6 +235,17 @@ TEST_F(Radiance, ALightBelowAPatternEmitsNothing) {
   EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U);
 }
 
+// An alias inherits the modifier of its original, and a texture leaves the flux as it is.
+TEST_F(Radiance, AnAliasAndATextureKeepTheEmission) {
+  const Scene scene = scene_with(
+      "void light bright 0 0 3 2 2 2\ninherit alias same bright\n"
+      "void texfunc waves 4 wx wy wz waves.cal 0 1 1\nwaves light wavy 0 0 3 2 2 2\n" +
+      square("same", 0) + square("wavy", 1));
+  for (const Polygon& polygon : scene.polygons)
+    EXPECT_NEAR(scene.materials[polygon.material].exitance[0], 2 * pi, 1e-12);
+  EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 0U);
+}
+
 TEST_F(Radiance, WhatIsLeftOutIsNamed) {
   const Scene scene =
       scene_with(square("shiny", 0) + square("papered", 1) + square("void", 2) + square("beam", 3) +

@@ -96,7 +96,7 @@ Penumbra penumbra() {
     double by_solid_angle = 0;
     double by_area = 0;
     for (const auto& [u, v, s, t] : scrambled_sobol(samples, hash({trial, 5}))) {
-      const LightSample arrival = sample_luminaire(lamp, scene.up, {Point(0, 0, 0), Vector::UnitZ()}, {u, v});
+      const LightSample arrival = LightSource(lamp, scene.up).sample({Point(0, 0, 0), Vector::UnitZ()}, {u, v});
       by_solid_angle += arrival.irradiance * arriving(arrival.from) / samples;
       // Uniform over the sphere: E = M / pi x area x the mean of cos cos' / d^2 over the sphere's points that face the
       // receiver.

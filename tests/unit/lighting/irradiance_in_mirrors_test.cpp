@@ -174,7 +174,7 @@ TEST(IrradianceInMirrors, OfNarrowSpotsAtSmallMirrorsIsThatOfTheirImages) {
   }
 }
 
-// A ring of equal mirrors, open to an even sky of radiance 1, is the mirror of a prism without a lid.
+// The sides of an upright prism are equal mirrors. Its top is open to an even sky of radiance 1.
 constexpr int ring_sides = 40;  // more than are targets of rays
 constexpr double ring_height = 2, ring_reflectance = 0.9;
 

@@ -5,10 +5,12 @@
 #include "support/scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace patchlight::mirror_chains_test {
 namespace {
@@ -87,12 +89,19 @@ TEST(MirrorChains, AreRankedByTheBeamsOfNarrowLamps) {
   EXPECT_EQ(found.chains[0].mirrors[0].polygon, 0U);
 }
 
-// Two mirrors that face each other, cut into facets. A point between them sees the same images as in whole mirrors. The
-// number of chains exceeds the limit, and the error covers the others.
-TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
-  constexpr double gap = 2, edge = 2, reflectance = 0.9;
+// Two mirrors that face each other, cut into facets. A point between them sees the same images as in whole mirrors.
+struct Facets {
+  static constexpr double gap = 2, reflectance = 0.9;
+  Scene scene;
+  SurfacePoint at{Point(1, 0, -0.5), Vector::UnitZ(), no_polygon};
+
+  explicit Facets(std::span<const Point> lamps);
+  double exact() const;
+};
+
+Facets::Facets(std::span<const Point> lamps) : scene(empty_scene({mirror(reflectance), grey(0.5)})) {
+  constexpr double edge = 2;
   constexpr int half = 12;
-  Scene scene = empty_scene({mirror(reflectance), grey(0.5)});
   for (int k = -half; k < half; ++k) {
     for (int m = -half; m < half; ++m) {
       const double y = k * edge, z = m * edge;
@@ -104,27 +113,52 @@ TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
     }
   }
   scene = with_square(std::move(scene), Point(0.9, -0.1, -0.5), 0.2, 1);
-  scene.luminaires = {point_light(Point(0.7, 0.3, 1.1))};
-  const Tracing tracing(scene, {}, Occluder::Blockers::all, Reflections::followed);
-  const Lighting lighting = lighting_of(scene, tracing);
-  EXPECT_TRUE(lighting.mirrors->paths.found().is_cut);
-  EXPECT_EQ(lighting.mirrors->paths.chains().size(), 1024U);
-  const SurfacePoint at{Point(1, 0, -0.5), Vector::UnitZ(), no_polygon};
-  const DirectIrradiance found = direct_irradiance(lighting, std::span(&at, 1), {.only_in_mirrors = true});
-  // Images at x0 + 2 k gap and -x0 + 2 k gap, by |2 k| and |2 k - 1| mirrors, within reach of the facets.
-  double exact = 0;
-  for (int k = -6; k <= 6; ++k) {
+  for (const Point& lamp : lamps) scene.luminaires.push_back(point_light(lamp));
+}
+
+// Images at x0 + 2 k gap and -x0 + 2 k gap, by |2 k| and |2 k - 1| mirrors, within reach of the facets.
+double Facets::exact() const {
+  double sum = 0;
+  for (const Luminaire& lamp : scene.luminaires) {
+    const Point& source = lamp.position;
     const auto from = [&](double x, int mirrors) {
       if (mirrors == 0) return 0.0;
-      const Vector way = Point(x, 0.3, 1.1) - at.point;
+      const Vector way = Point(x, source.y(), source.z()) - at.point;
       return std::pow(reflectance, mirrors) * way.z() / std::pow(way.norm(), 3);
     };
-    exact += from(0.7 + 2 * k * gap, std::abs(2 * k)) + from(-0.7 + 2 * k * gap, std::abs(2 * k - 1));
+    for (int k = -6; k <= 6; ++k)
+      sum += from(source.x() + 2 * k * gap, std::abs(2 * k)) + from(-source.x() + 2 * k * gap, std::abs(2 * k - 1));
   }
+  return sum;
+}
+
+// The error covers the light that is missing, and is no larger than all light.
+void expect_error_of_missing_light(const Facets& facets, const Lighting& lighting) {
+  EXPECT_TRUE(lighting.mirrors->paths.found().is_cut);
+  const DirectIrradiance found = direct_irradiance(lighting, std::span(&facets.at, 1), {.only_in_mirrors = true});
+  const double exact = facets.exact();
   const double missing = exact - found.irradiance(0, 0);
   EXPECT_GE(missing, -1e-9 * exact);
   EXPECT_LE(missing, 2 * found.standard_error(0, 0));
   EXPECT_LE(found.standard_error(0, 0), exact);
+}
+
+// The number of chains exceeds the limit.
+TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
+  const Facets facets(std::array{Point(0.7, 0.3, 1.1)});
+  const Tracing tracing(facets.scene, {}, Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(facets.scene, tracing);
+  EXPECT_EQ(lighting.mirrors->paths.chains().size(), 1024U);
+  expect_error_of_missing_light(facets, lighting);
+}
+
+// The beams of 64 lamps to the facets are too many to be tested.
+TEST(MirrorChains, OfBeamsThatAreTooManyAreInTheError) {
+  std::vector<Point> lamps;
+  for (int k = 0; k < 64; ++k) lamps.emplace_back(0.2 + 0.025 * k, -0.8 + 0.2 * (k % 8), 1.1);
+  const Facets facets(lamps);
+  const Tracing tracing(facets.scene, {}, Occluder::Blockers::all, Reflections::followed);
+  expect_error_of_missing_light(facets, lighting_of(facets.scene, tracing));
 }
 
 }  // namespace

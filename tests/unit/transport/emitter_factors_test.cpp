@@ -18,8 +18,8 @@ using namespace test;
 
 constexpr PolygonIndex lamp_of_furnished_room = 12;
 
-// A floor of 1 x 1 m under a lamp of 0.6 x 0.6 m at 2 m, with bars between them that leave slits. They hide most of the
-// lamp from every point.
+// A floor of 1 x 1 m under an emitter of 0.6 x 0.6 m at 2 m, with bars between them that leave slits. They hide most of
+// the emitter from every point.
 Scene under_bars(int bars, double slit) {
   Scene scene = empty_scene({grey(0.5), grey(0, 10)});
   scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(1, 0, 0), Point(1, 1, 0), Point(0, 1, 0)});
@@ -34,32 +34,32 @@ Scene under_bars(int bars, double slit) {
   return scene;
 }
 
-EmitterFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex lamp, std::uint64_t seed) {
+EmitterFactors factors_of(const Scene& scene, const PatchMesh& mesh, PolygonIndex emitter, std::uint64_t seed) {
   const Occluder occluder(scene);
-  const EmitterSide side{lamp, Side::front};
+  const EmitterSide side{emitter, Side::front};
   return emitter_factors(scene, mesh, occluder, {&side, 1}, {.seed = seed});
 }
 
-// With nothing in between, both halves are the closed form. The reference is the sum of exchange areas with the lamp's
-// patches, which are accurate to 1e-3.
+// With nothing in between, both halves are the closed form. The reference is the sum of exchange areas with the
+// emitter's patches, which are accurate to 1e-3.
 TEST(EmitterFactors, AreTheClosedFormWhereNothingIsBetween) {
   const Scene scene = under_bars(0, 0);
   const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), 0.2);
   const EmitterFactors factors = factors_of(scene, mesh, 1, 1);
   const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
   const PatchRange floor = mesh.patches_on(0, Side::front);
-  const PatchRange lamp = mesh.patches_on(1, Side::front);
+  const PatchRange emitter = mesh.patches_on(1, Side::front);
   for (PatchIndex i = floor.begin; i < floor.end; ++i) {
     double expected = 0;
-    for (PatchIndex j = lamp.begin; j < lamp.end; ++j) expected += static_cast<double>(S.at(i, j)) / mesh.area[i];
+    for (PatchIndex j = emitter.begin; j < emitter.end; ++j) expected += static_cast<double>(S.at(i, j)) / mesh.area[i];
     EXPECT_NEAR(factors.halves[0](i, 0), expected, 2e-3 * expected);
     EXPECT_EQ(factors.halves[0](i, 0), factors.halves[1](i, 0));
     EXPECT_EQ(factors.standard_error(i, 0), 0);
   }
-  for (PatchIndex i = lamp.begin; i < lamp.end; ++i) EXPECT_EQ(factors.halves[0](i, 0), 0);
+  for (PatchIndex i = emitter.begin; i < emitter.end; ++i) EXPECT_EQ(factors.halves[0](i, 0), 0);
 }
 
-// Agreement of probes is not sufficient: through slits that leave 2 % of the lamp visible, 16 rays mostly meet only
+// Agreement of probes is not sufficient: through slits that leave 2 % of the emitter visible, 16 rays mostly meet only
 // bars. The mean over patches, seeds and halves is compared with that of 4,096 rays for every pair.
 TEST(EmitterFactors, HaveTheRightMeanBehindSlits) {
   const Scene scene = under_bars(30, 0.002);
@@ -67,7 +67,7 @@ TEST(EmitterFactors, HaveTheRightMeanBehindSlits) {
   const Occluder occluder(scene);
   const PatchRange floor = mesh.patches_on(0, Side::front);
 
-  const PatchIndex lamp = mesh.patches_on(1, Side::front).begin;
+  const PatchIndex emitter = mesh.patches_on(1, Side::front).begin;
   double expected = 0;
   const std::uint32_t many = 4096;
   for (PatchIndex i = floor.begin; i < floor.end; ++i) {
@@ -81,7 +81,7 @@ TEST(EmitterFactors, HaveTheRightMeanBehindSlits) {
     for (std::uint32_t k = 0; k < many; ++k) {
       const auto u = [&](std::uint32_t d) { return (hash({i, k, d}) + 0.5) * 0x1p-32; };
       const PairSample sample = draw_by_area(from, to, {u(0), u(1), u(2), u(3)});
-      segments.push_back({sample.from, sample.to, mesh.polygon[i], mesh.polygon[lamp]});
+      segments.push_back({sample.from, sample.to, mesh.polygon[i], mesh.polygon[emitter]});
       weights.push_back(sample.weight / from.area);
     }
     const auto arriving = occluder.transmittance(segments);
@@ -132,7 +132,7 @@ TEST(EmitterFactors, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE((one.standard_error == two.standard_error).all());
 }
 
-// A lamp other than a convex quadrilateral is the sum of its triangles: an L of three squares.
+// A emitter other than a convex quadrilateral is the sum of its triangles: an L of three squares.
 TEST(EmitterFactors, OfAnyPolygonAreThoseOfItsParts) {
   const auto floor = [] {
     return with_quad(empty_scene({grey(0.5), grey(0, 10)}),
