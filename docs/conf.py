@@ -27,6 +27,16 @@ mathjax_path = "file:///usr/share/javascript/mathjax/MathJax.js?config=TeX-AMS-M
 mathjax2_config = {"tex2jax": {"processClass": "math", "inlineMath": [["\\(", "\\)"]], "displayMath": [["\\[", "\\]"]]}}
 myst_update_mathjax = False
 html_theme = "furo"
+# Debian's furo follows the dark setting of the browser in code blocks alone, and expects normalize.css on the web server.
+html_theme_options = {"dark_css_variables": {
+    "color-problematic": "#ee5151",
+    "color-foreground-primary": "#ffffffcc", "color-foreground-secondary": "#9ca0a5", "color-foreground-muted": "#81868d",
+    "color-foreground-border": "#666666", "color-background-primary": "#131416", "color-background-secondary": "#1a1c1e",
+    "color-background-hover": "#1e2124ff", "color-background-hover--transparent": "#1e212400", "color-background-border": "#303335",
+    "color-background-item": "#444", "color-brand-primary": "#2b8cee", "color-brand-content": "#368ce2",
+    "color-highlighted-background": "#083563", "color-highlight-on-target": "#333300"}}
+NORMALIZE = pathlib.Path("/usr/share/javascript/normalize.css")
+html_static_path = [str(NORMALIZE)] if NORMALIZE.exists() else []
 html_title = f"patchlight {release}"
 html_show_copyright = False
 
@@ -94,3 +104,5 @@ def cell_text(cell):
 def setup(app):
     app.add_source_parser(NotebookParser)
     app.connect("source-read", edit_source)
+    if NORMALIZE.exists():
+        app.add_css_file("normalize.css", priority=100)  # before that of the theme
