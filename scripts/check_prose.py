@@ -158,8 +158,8 @@ def source_paragraphs(text, comments):
             yield Paragraph("text", joined)
             joined = []
         end = token.end()
-        lines = [(number + k, line.lstrip(" *")) for k, line in enumerate(words.replace("\\n", " ").replace('\\"', '"').splitlines())]
-        if is_comment or joined or len(re.findall(r"[a-z]{2,}", words)) > 2:
+        lines = [(number + k, line.lstrip(" *")) for k, line in enumerate(words.replace("\\n", "\a").replace('\\"', '"').splitlines())]
+        if is_comment or joined or len(re.findall(r"\b[a-z]{2,}\b", words)) > 2:
             joined += [(at, line) for at, line in lines if line.strip()]
     if joined:
         yield Paragraph("text", joined)
@@ -188,7 +188,7 @@ def script_paragraphs(text, is_python):
 
 def sentences(text):
     at = 0
-    for end in re.finditer(r"(?<=[.!?])[\"')*]* +(?=[A-Z\"'(`*])|(?<=[:;]) +|$", text):
+    for end in re.finditer(r"(?<=[.!?])[\"')*]* +(?=[A-Z\"'(`*])|(?<=[:;]) +|\a|$", text):
         yield at, text[at:end.start()]
         at = end.end()
 
