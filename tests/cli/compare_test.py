@@ -98,7 +98,7 @@ class CompareTest(ToolTest):
         done = self.run_tool("compare-solvers", "room.obj", "--patches", 100, "-o", "out", "--max-iterations", 2, "--solvers",
                              "jacobi,cg")
         self.assertEqual(done.returncode, NOT_CONVERGED)
-        self.assertIn("not reached by jacobi, cg", done.stderr)
+        self.assertIn("jacobi, cg", done.stderr)
         self.assertTrue((self.folder / "out" / "compare.json").exists())
 
     def test_refusals(self):
