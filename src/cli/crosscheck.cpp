@@ -103,8 +103,8 @@ std::string typical_error(const VerifiedPart& part) {
   const double told = 2 * noise * noise * std::sqrt(2 / static_cast<double>(part.rows.size()));
   const bool is_hidden = error * error < told;
   return "typical error of a patch " +
-         (is_hidden ? "hidden by the noise of the paths, " + percent(noise, 2) + " % (more --paths reduce it)"
-                    : percent(error, 2) + " %, the noise of the paths, " + percent(noise, 2) + " %, taken out");
+         (is_hidden ? "is below the noise of the paths, " + percent(noise, 2) + " % (more --paths reduce it)"
+                    : percent(error, 2) + " %, without the noise of the paths, " + percent(noise, 2) + " %");
 }
 
 // A line with a figure, followed by its meaning if requested.
@@ -252,7 +252,16 @@ ExitCode crosscheck(const CrosscheckArguments& arguments) {
   // 1. Solve
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
-  const Simulation simulation = simulate(scene, arguments.request, observer);
+  line.expect({Stage::read, Stage::plan, Stage::mesh, Stage::form_factors, Stage::closure, Stage::direct_light,
+               Stage::solve, Stage::error_bars, Stage::trace_paths},
+              refines(arguments.request.accuracy) ? 0.2 : 1, arguments.request.accuracy.seconds);
+  Steps with;
+  with.look = [&line](const Simulation& solved) {
+    const std::optional<double> wanted = solved.plan.accuracy.relative_error;
+    const double error = solved.accuracy.back().total;
+    line.next_mesh(share_of_meshes(error, wanted), share_of_meshes(error / 2, wanted));
+  };
+  const Simulation simulation = simulate(scene, arguments.request, observer, with);
   const Report report = report_of(scene, arguments.request, simulation);
   if (!simulation.solution.converged) {
     line.hide();

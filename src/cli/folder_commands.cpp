@@ -174,9 +174,17 @@ void write_page_of_comparison(const ComparisonArguments& arguments, const Scene&
                               .comparison = &comparison});
 }
 
-// Marks an error with a question mark if it is within the error of the reference.
-std::string judged(double error, const Study& study) {
-  return percent(error) + (error > 0 && error <= study.reference.bar ? "?" : "");
+// True if the error is within the error of the reference.
+bool is_doubtful(double error, const Study& study) { return error > 0 && error <= study.reference.bar; }
+
+std::string judged(double error, const Study& study) { return percent(error) + (is_doubtful(error, study) ? "?" : ""); }
+
+bool has_doubtful_errors(const Study& study) {
+  return std::ranges::any_of(study.sweeps, [&](const StudySweep& sweep) {
+    return std::ranges::any_of(sweep.settings, [&](const StudySetting& setting) {
+      return is_doubtful(setting.error, study) || is_doubtful(setting.display_error, study);
+    });
+  });
 }
 
 std::string table(const Study& study) {
@@ -206,7 +214,7 @@ std::string facts(const Scene& scene, const Study& study) {
   }
   text << "\nerror: of the patch means; display: of the field, constant on each patch; own: due to the swept quantity "
           "alone; *: on the Pareto front of error and processor seconds\n"
-       << (reference.bar > 0 ? "?: not significant, since the reference has a similar error\n" : "")
+       << (has_doubtful_errors(study) ? "?: not significant, since the reference has a similar error\n" : "")
        << "at the finest setting: mesh " << percent(study.parts.mesh) << " %, form factors "
        << percent(study.parts.form_factors) << " %, solver " << percent(study.parts.solver) << " %\n";
   return text.str();
@@ -233,6 +241,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   }
 
   // 2. Find the form factors and write them
+  line.expect({Stage::read, Stage::plan, Stage::mesh, Stage::form_factors, Stage::closure, Stage::write});
   const Written written = arguments.request.assembly.storage == Storage::rays ? write_rays(arguments, scene, observer)
                                                                               : write_pairs(arguments, scene, observer);
   line.hide();

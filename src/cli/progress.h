@@ -11,6 +11,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace patchlight::cli {
 
@@ -20,7 +22,34 @@ enum class ProgressShown { nothing, line, log };
 /// The updated line if stderr is a terminal, else the log.
 ProgressShown progress_shown(bool quiet);
 
-/// Prints stage, percentage and time left on stderr. An updated line is erased at the end.
+/// Estimates the finished share of a run from its stages. The share never falls.
+class RunShare {
+ public:
+  /// The stages of the run, and the share of the first mesh in the work on all meshes. Initially no stages: no share of
+  /// the run is known.
+  void expect(std::vector<Stage> stages, double first_mesh);
+  bool is_known() const { return !stages_.empty(); }
+  /// The share after another report.
+  double after(const Progress& progress);
+  /// The next reports are those of another mesh. Meshes up to now were the share `done` of the work on all meshes, and
+  /// with the next one it will be `next`.
+  void next_mesh(double done, double next);
+  /// The number of the mesh of a stage, from 1; 0 for stages that belong to the whole run.
+  int mesh_of(Stage stage) const;
+
+ private:
+  double finished_part_of_stage(const Progress& progress);
+
+  std::vector<Stage> stages_;
+  int mesh_ = 1;
+  bool meshes_are_done_ = false;
+  double mesh_begin_ = 0, mesh_end_ = 1;  // of the work on all meshes
+  std::optional<Stage> stage_;
+  double pass_begin_ = 0, pass_end_ = 0, fraction_ = 0;  // a stage may run through its work more than once
+  double share_ = 0;
+};
+
+/// Prints mesh, stage, share of the run and time left on stderr. An updated line is erased at the end.
 class ProgressLine {
  public:
   explicit ProgressLine(ProgressShown shown) : shown_(shown) {}
@@ -30,6 +59,11 @@ class ProgressLine {
 
   /// Sets the name of the work, printed first; initially empty.
   void name(std::string work);
+  /// As RunShare::expect(), with the limit on the wall seconds of the run if it has one. Without this call only the
+  /// share of each stage is printed, and no time left.
+  void expect(std::vector<Stage> stages, double first_mesh = 1, std::optional<double> limit = {});
+  /// As RunShare::next_mesh().
+  void next_mesh(double done, double next) { run_.next_mesh(done, next); }
   void show(const Progress& progress) { show(progress, wall_seconds()); }
   /// `now` is in wall seconds.
   void show(const Progress& progress, double now);
@@ -38,14 +72,22 @@ class ProgressLine {
 
  private:
   std::string text_of(const Progress& progress, double now);
+  double seconds_left(double share, double now);
 
   ProgressShown shown_;
   std::string work_;
-  std::optional<Stage> stage_;
-  double stage_begin_ = 0;           // wall seconds
-  std::optional<double> next_line_;  // of the log, wall seconds
+  RunShare run_;
+  std::optional<double> limit_;      // seconds
+  std::optional<double> begin_;      // wall seconds, as the others
+  std::optional<double> left_;       // seconds
+  double left_at_ = 0;               // the time of left_
+  std::optional<double> next_line_;  // of the log
   std::size_t width_ = 0;            // characters on the line
 };
+
+/// The finished share of the work on all meshes, once a mesh has the relative error `error` and `wanted` is the target:
+/// the work grows as the power 1.5 of the accuracy. 1 without a target.
+double share_of_meshes(double error, std::optional<double> wanted);
 
 /// Shows progress on the line, which must outlive the observer, and continues until the run is interrupted.
 Observer observer_on(ProgressLine& line);

@@ -169,6 +169,12 @@ Report report_on(const Results& results, const Request& request) {
                    are_read ? sensor_facts(results.scene->sensors, sensors.readings, sensors.warnings) : SensorFacts{});
 }
 
+// The expected share of the first mesh in the work on all meshes.
+double share_of_first_mesh(const AccuracyOptions& accuracy) {
+  if (refines(accuracy)) return 0.2;
+  return accuracy.local_cuts ? 0.5 : 1;
+}
+
 // Prints a line for each solved mesh, unless the run is quiet.
 LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
   if (arguments.quiet) return {};
@@ -176,7 +182,22 @@ LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
     line.hide();
     const std::vector<AccuracyStep>& meshes = simulation.accuracy;
     print_message(("mesh " + std::to_string(meshes.size())).c_str(), step_in_words(meshes.back()));
+    const std::optional<double> wanted = simulation.plan.accuracy.relative_error;
+    const double error = meshes.back().total;
+    line.next_mesh(share_of_meshes(error, wanted), share_of_meshes(error / 2, wanted));
   };
+}
+
+// The stages of a run, the meshes and then the views.
+void expect_stages(const SolveArguments& arguments, const Request& request, const Scene& scene, ProgressLine& line) {
+  std::vector<Stage> stages = {Stage::read,    Stage::plan,         Stage::mesh, Stage::form_factors,
+                               Stage::closure, Stage::direct_light, Stage::solve};
+  const AccuracyOptions& accuracy = request.accuracy;
+  if (accuracy.error_bars || accuracy.cheap_error_bars || refines(accuracy)) stages.push_back(Stage::error_bars);
+  if (!scene.sensors.empty()) stages.push_back(Stage::gather);
+  if (!arguments.picture.file.empty() || !arguments.page.empty() || !arguments.lightmap.folder.empty())
+    stages.push_back(Stage::render);
+  line.expect(std::move(stages), share_of_first_mesh(accuracy), accuracy.seconds);
 }
 
 // Solves the scene.
@@ -202,6 +223,7 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   if (!arguments.discards) with.keeps_unfinished = keep_what_is_there;
   with.look = tell_of_meshes(arguments, line);
   with.row_blocks = checkpoint.blocks({*results.scene, input.request.effects});
+  expect_stages(arguments, input.request, *results.scene, line);
   simulation = simulate(results.scene, input.request, observed, with);
   if (!may_write_what_is_there()) throw Canceled();
   results.iterates = iterates.of_solution(simulation);

@@ -12,7 +12,7 @@ TOOL = os.environ["PATCHLIGHT_TOOL"]
 
 
 # Progress lines, printed every ten seconds, which a slow machine may cause; they are not messages.
-PROGRESS = re.compile(r"^patchlight: (?!error|note|warning).* \d+ %(, .* left)?\n", re.MULTILINE)
+PROGRESS = re.compile(r"^patchlight: (?!error|note|warning).* \d+ % of (the run|this stage)(, .* left)?\n", re.MULTILINE)
 
 
 def run(*arguments, folder, timeout=600, text=""):
