@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -147,6 +148,23 @@ Pointer<vtkFloatArray> floats(const char* name, const FieldView& values) {
     for (Eigen::Index band = 0; band < values.cols(); ++band) *out++ = static_cast<float>(values(row, band));
   }
   return array;
+}
+
+void name_components(vtkFieldData& data, const Bands& bands) {
+  std::vector<std::string> of_bands;
+  for (const Band& band : bands) of_bands.push_back(band.name);
+  for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const array = data.GetArray(k);
+    if (array == nullptr || array->GetName() == nullptr) continue;
+    const std::string_view name = array->GetName();
+    std::vector<std::string> names = of_bands;
+    if (name.starts_with("rgb")) names = {"r", "g", "b"};
+    if (name == "xyz") names = {"X", "Y", "Z"};
+    if (name == "normal") names = {"x", "y", "z"};
+    const int count = array->GetNumberOfComponents();
+    if (count == 1 || static_cast<std::size_t>(count) != names.size()) continue;
+    for (int c = 0; c < count; ++c) array->SetComponentName(c, names[static_cast<std::size_t>(c)].c_str());
+  }
 }
 
 Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
 
 #include <array>
@@ -25,6 +26,10 @@ Pointer<vtkPolyData> polygons_of(const PatchMesh& mesh);
 
 /// One tuple per row, narrowed to float.
 Pointer<vtkFloatArray> floats(const char* name, const FieldView& values);
+
+/// Names the components of arrays with one per band, color or axis: "r", "g", "b". Viewers show "X", "Y", "Z"
+/// otherwise.
+void name_components(vtkFieldData& data, const Bands& bands);
 
 /// One tuple of three bytes per color.
 Pointer<vtkUnsignedCharArray> colours(const char* name, const std::vector<std::array<std::uint8_t, 3>>& values);

@@ -107,6 +107,7 @@ void add_values(vtkPolyData& shape, const std::vector<Row>& rows, const Readings
   data.AddArray(numbers<vtkIntArray>("sensor", sensors));
   data.AddArray(numbers<vtkIntArray>("inside_wall", inside_walls));
   data.AddArray(floats("normal", normals));
+  name_components(data, readings.bands);
   data.SetActiveScalars(name.c_str());
 }
 

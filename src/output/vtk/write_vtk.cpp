@@ -147,6 +147,8 @@ void add_values(vtkPolyData& polygons, const SolvedSurface& surface, double expo
   point_data.AddArray(colours("rgb_smooth", tone_map(surface.radiance_at_vertices, exposure, bands)));
   if (surface.ambient_occlusion_at_vertices.size() > 0)
     point_data.AddArray(numbers<vtkFloatArray>("ambient_occlusion", surface.ambient_occlusion_at_vertices));
+  name_components(cell_data, bands);
+  name_components(point_data, bands);
 }
 
 Pointer<vtkDoubleArray> up_of(const Scene& scene) {
@@ -437,6 +439,7 @@ void write_series(const fs::path& pvd, const Scene& scene, const Simulation& sim
     if (observer && !observer({.stage = Stage::write, .fraction = fraction})) throw Canceled();
     const Pointer<vtkPolyData> polygons = polygons_of(simulation.mesh);
     add_values(*polygons->GetCellData(), simulation.problem, iterates[k].cast<double>(), exposed);
+    name_components(*polygons->GetCellData(), bands_of(scene));
     add_facts(*polygons->GetFieldData(), scene, history[k], provenance);
     names.push_back(file_name(pvd, k, values));
     if (!fs::exists(folder / names.back())) unfinished.made.push_back(folder / names.back());

@@ -246,6 +246,17 @@ TEST(WriteVtk, TellsWhereItComesFrom) {
   EXPECT_EQ(number(polygons, "stage_seconds", 1), 0.25);
 }
 
+// A viewer calls unnamed components X, Y and Z.
+TEST(WriteVtk, NamesTheComponentsOfColors) {
+  const auto polygons = written_and_read(tiny_scene(), tiny_simulation());
+  for (vtkDataArray* array :
+       {polygons->GetCellData()->GetArray("radiance"), polygons->GetCellData()->GetArray("irradiance"),
+        polygons->GetCellData()->GetArray("rgb"), polygons->GetPointData()->GetArray("radiance_smooth")}) {
+    const std::array names = {"r", "g", "b"};
+    for (int c = 0; c < 3; ++c) EXPECT_STREQ(array->GetComponentName(c), names[static_cast<std::size_t>(c)]);
+  }
+}
+
 TEST(WriteVtk, EveryArrayOfValuesHasAUnit) {
   const auto polygons = written_and_read(tiny_scene(), tiny_simulation_with_bars());
   for (vtkFieldData* const data :
@@ -276,6 +287,7 @@ TEST(WriteVtk, TakesBandsAsTheSceneStatesThem) {
   const Field radiance = simulation.solution.radiosity / std::numbers::pi;
   const Field luminances = luminous_efficacy * (0.25 * radiance.col(0) + 0.75 * radiance.col(1));
   expect_floats(polygons->GetCellData()->GetArray("luminance"), luminances);
+  EXPECT_STREQ(polygons->GetCellData()->GetArray("radiosity")->GetComponentName(1), "570 nm");
   EXPECT_EQ(polygons->GetCellData()->GetArray("rgb")->GetNumberOfComponents(), 3);
 }
 
