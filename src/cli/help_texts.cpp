@@ -112,7 +112,7 @@ constexpr OptionText options[] = {
      "The image shows both solutions and their difference of luminance in false colors. Default: one solution."},
     {"--observers", "render", results, usual, "FILE", "UGR and other values at the cameras (.csv) [default: none]",
      "Vertical and cylindrical illuminance, background luminance and UGR at the cameras of the scene file, or at those "
-     "of --view or --camera."},
+     "of --view or --camera. UGR has no error bar, and is that of the maintained luminaires."},
     {"--solvers", "compare-solvers", results, common, "A,B,...", "Solvers to compare, in this order [default: all]",
      "Any of {solvers}, and progressive-on-demand, which computes rows of form factors when it needs them."},
     {"--no-series", "compare-solvers", results, usual, "", "Write no series for ParaView [default: one per solver]",
@@ -172,8 +172,9 @@ constexpr OptionText options[] = {
      "Maps are .svg or .png files of --points-output, with isolines. Daylight factors need an overcast sky."},
     {"--map-range", "", sensors, usual, "LOWER,UPPER", "Color range of maps [default: 0 to a rounded maximum]", ""},
 
-    {"--patches", "", patches, common, "N", "Number of patches, met within 10 % [default: {patches}]",
-     "Models with many faces need more. With --accuracy, the first mesh has {first_patches} patches by default."},
+    {"--patches", "", patches, common, "N", "Approximate number of patches [default: {patches}]",
+     "Met within about 10 %, and with error bars within 30 %, because these cut patches in four. Models with many faces "
+     "need more. With --accuracy, the first mesh has {first_patches} patches by default."},
     {"--max-edge", "", patches, usual, "LENGTH", "Longest patch edge, e.g. 30cm [default: set by --patches]",
      "A number without a unit is in model units."},
     {"--sides", "check", patches, usual, "auto|front|both", "Count the simulated sides with this option [default: no]",
@@ -240,8 +241,8 @@ constexpr OptionText options[] = {
      "factors."},
     {"--samples", "", method, advanced, "N", "Shadow rays of a partly occluded pair of patches [default: 8]", ""},
     {"--estimator", "", method, advanced, "auto|area|point-polygon|hemisphere|contour",
-     "Estimator of form factors; all but auto are slow [default: auto]",
-     "area: points on both patches. point-polygon: points on one patch and the exact factor to the other. hemisphere: "
+     "Estimator of form factors, to compare methods [default: auto]",
+     "auto takes most rays per pair, and needs the least time for a given error. area: points on both patches. point-polygon: points on one patch and the exact factor to the other. hemisphere: "
      "--samples rays over the hemisphere of each patch. contour: the contour integral times the visible fraction."},
     {"--without", "form-factors", method, advanced, "hidden|free|far",
      "Switch a shortcut off, to measure its effect (repeatable) [default: all on]",

@@ -41,6 +41,7 @@ std::vector<Camera> observers_of(const std::vector<PictureSettings>& wanted, con
     const std::optional<Camera> camera = camera_for(one, scene);
     if (!camera) throw InputError("--observers", "the scene has no [[camera]]\nhint: --camera EYE TARGET FOV");
     cameras.push_back(*camera);
+    if (cameras.back().name.empty()) cameras.back().name = "camera";
   }
   return cameras;
 }
@@ -170,6 +171,7 @@ ExitCode render(const RenderArguments& arguments) {
   const Simulation simulation = stored_solution(arguments.solution, read);
   std::optional<Simulation> other;
   if (!arguments.difference.empty()) other = stored_solution(arguments.difference, read);
+  if (wanted.size() == 1 && !other) line.expect({Stage::read, Stage::gather, Stage::render});
 
   // 3. Render the images and write each at once; the first Ctrl-C stops after the current one
   std::vector<std::filesystem::path> written;

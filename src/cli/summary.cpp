@@ -104,10 +104,10 @@ std::string energy(const Report& report) {
   std::ostringstream text;
   text << (is_spectral ? "flux in W, all bands: emitted " : "flux in W per band: emitted ") << in_words(balance.emitted)
        << ((balance.arriving > 0).any() ? "; arriving from luminaires, sun and sky " + in_words(balance.arriving) : "")
-       << "; absorbed " << in_words(balance.absorbed) << "; escaped " << in_words(balance.escaped) << "; lost at backs "
-       << in_words(balance.lost_at_backs)
-       << (row_sums_known ? "; form factor defect " + in_words(balance.defect) + "; imbalance "
-                          : "; imbalance with the form factor defect ")
+       << "; absorbed " << in_words(balance.absorbed) << "; escaped " << in_words(balance.escaped)
+       << "; lost at sides without patches " << in_words(balance.lost_at_backs)
+       << (row_sums_known ? "; lost by form factors " + in_words(balance.defect) + "; imbalance "
+                          : "; imbalance, with the loss by form factors, ")
        << rounded(balance.imbalance, 2) << " of the flux" << why_imbalanced(report);
   return text.str();
 }

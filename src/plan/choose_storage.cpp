@@ -88,7 +88,8 @@ std::string reason_for_rays(const StoredLight& light, const Request& request, do
   if (light.is_mirrored) return "which follow light over glazing and mirrors in each band";
   if (light.has_goal) return "because the patches are concentrated on a goal";
   if (light.patches <= most_patches_in_pairs && has_coarse_sides(light, request))
-    return "because " + std::to_string(light.sides) + " sides of faces have few patches each: pairs would take longer";
+    return "because " + std::to_string(light.patches) + " patches are few for " + std::to_string(light.sides) +
+           " sides of faces: all pairs would take longer";
   const bool fits = bytes <= usable_memory(request.resources);
   return "because all pairs of " + std::to_string(light.patches) + " patches need " + gigabytes(bytes) +
          (fits ? " and more time" : ", and " + gigabytes(usable_memory(request.resources)) + " is allowed");

@@ -198,8 +198,8 @@ Diagnostics notes_on(const Count& count) {
     notes.push_back(
         {DiagnosticCode::unlit_sides, "the inner sides of " + solids(count.dark) + " without a lamp are left out"});
   if (count.outside > 0) {
-    notes.push_back({DiagnosticCode::unlit_sides,
-                     "the outer sides of " + solids(count.outside) + " around all lamps are left out"});
+    notes.push_back({DiagnosticCode::unlit_sides, "the outer sides of " + solids(count.outside) +
+                                                      " around all lamps (usually the room) are left out"});
   }
   if (count.sealed > 0) {
     notes.push_back({DiagnosticCode::sealed_solid, "no daylight gets into " + solids(count.sealed) +

@@ -130,6 +130,7 @@ class RenderTest(ToolTest):
         self.good(*both, "camera.csv", "--camera", "0.5,0.5,1.5", "0,0,1", "60")
         view, camera = ((self.folder / name).read_text().splitlines()[1] for name in ("view.csv", "camera.csv"))
         self.assertEqual(view.split(",")[1:], camera.split(",")[1:])
+        self.assertEqual([view.split(",")[0], camera.split(",")[0]], ["near", "camera"])
         self.assertFalse(list(self.folder.glob("*.png")))
 
     def srgb(self, *words):

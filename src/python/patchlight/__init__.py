@@ -24,7 +24,7 @@ __all__ = ["InputError", "Material", "OutputError", "Scene", "Simulation", "Solu
 
 
 def read(*models, **options):
-    """Reads one model, or several as one scene. Options: unit, up, set, only, leave_out, detail, keep_faces, sky, sun,
+    """Reads one model, or several as one scene. Options: unit, up, set, only, exclude, simplify, no_merge, sky, sun,
     ground, weather, points (a file of sensors)."""
     refuse_unused("read()", options, OF_WRITING)
     scene = _core.read(arguments_of(models, options))
