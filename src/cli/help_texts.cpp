@@ -173,7 +173,8 @@ constexpr OptionText options[] = {
     {"--map-range", "", sensors, usual, "LOWER,UPPER", "Color range of maps [default: 0 to a rounded maximum]", ""},
 
     {"--patches", "", patches, common, "N", "Approximate number of patches [default: {patches}]",
-     "Met within about 10 %, and with error bars within 30 %, because these cut patches in four. Models with many faces "
+     "Met within about 10 %, and with error bars within 30 %, because these cut patches in four. Models with many "
+     "faces "
      "need more. With --accuracy, the first mesh has {first_patches} patches by default."},
     {"--max-edge", "", patches, usual, "LENGTH", "Longest patch edge, e.g. 30cm [default: set by --patches]",
      "A number without a unit is in model units."},
@@ -242,7 +243,8 @@ constexpr OptionText options[] = {
     {"--samples", "", method, advanced, "N", "Shadow rays of a partly occluded pair of patches [default: 8]", ""},
     {"--estimator", "", method, advanced, "auto|area|point-polygon|hemisphere|contour",
      "Estimator of form factors, to compare methods [default: auto]",
-     "auto takes most rays per pair, and needs the least time for a given error. area: points on both patches. point-polygon: points on one patch and the exact factor to the other. hemisphere: "
+     "auto takes most rays per pair, and needs the least time for a given error. area: points on both patches. "
+     "point-polygon: points on one patch and the exact factor to the other. hemisphere: "
      "--samples rays over the hemisphere of each patch. contour: the contour integral times the visible fraction."},
     {"--without", "form-factors", method, advanced, "hidden|free|far",
      "Switch a shortcut off, to measure its effect (repeatable) [default: all on]",
