@@ -64,7 +64,7 @@ class Checkpoint(ToolTest):
         self.assertGreater(len(others), 0)
         (self.kept / "mine.txt").write_text("mine")
         done = self.run_whole()
-        self.assertNotIn("that an earlier run", done.stdout + done.stderr)
+        self.assertNotIn("note: checkpoint: ", done.stdout + done.stderr)
         self.assertEqual(self.blocks(), others)
         self.assertTrue((self.kept / "mine.txt").exists())
 
