@@ -257,9 +257,7 @@ ExitCode crosscheck(const CrosscheckArguments& arguments) {
               refines(arguments.request.accuracy) ? 0.2 : 1, arguments.request.accuracy.seconds);
   Steps with;
   with.look = [&line](const Simulation& solved) {
-    const std::optional<double> wanted = solved.plan.accuracy.relative_error;
-    const double error = solved.accuracy.back().total;
-    line.next_mesh(share_of_meshes(error, wanted), share_of_meshes(error / 2, wanted));
+    line.next_mesh(solved.accuracy.back().total, solved.plan.accuracy.relative_error);
   };
   const Simulation simulation = simulate(scene, arguments.request, observer, with);
   const Report report = report_of(scene, arguments.request, simulation);

@@ -144,6 +144,10 @@ std::string ProgressLine::text_of(const Progress& progress, double now) {
   return text;
 }
 
+void ProgressLine::next_mesh(double error, std::optional<double> wanted) {
+  run_.next_mesh(share_of_meshes(error, wanted), share_of_meshes(error / 2, wanted));
+}
+
 void ProgressLine::show(const Progress& progress, double now) {
   if (shown_ == ProgressShown::nothing) return;
   std::string text = text_of(progress, now);

@@ -62,8 +62,8 @@ class ProgressLine {
   /// As RunShare::expect(), with the limit on the wall seconds of the run if it has one. Without this call only the
   /// share of each stage is printed, and no time left.
   void expect(std::vector<Stage> stages, double first_mesh = 1, std::optional<double> limit = {});
-  /// As RunShare::next_mesh().
-  void next_mesh(double done, double next) { run_.next_mesh(done, next); }
+  /// The next reports are those of another mesh. The last one has the relative error `error`; `wanted` is the target.
+  void next_mesh(double error, std::optional<double> wanted);
   void show(const Progress& progress) { show(progress, wall_seconds()); }
   /// `now` is in wall seconds.
   void show(const Progress& progress, double now);

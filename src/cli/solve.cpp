@@ -182,9 +182,7 @@ LookAt tell_of_meshes(const SolveArguments& arguments, ProgressLine& line) {
     line.hide();
     const std::vector<AccuracyStep>& meshes = simulation.accuracy;
     print_message(("mesh " + std::to_string(meshes.size())).c_str(), step_in_words(meshes.back()));
-    const std::optional<double> wanted = simulation.plan.accuracy.relative_error;
-    const double error = meshes.back().total;
-    line.next_mesh(share_of_meshes(error, wanted), share_of_meshes(error / 2, wanted));
+    line.next_mesh(meshes.back().total, simulation.plan.accuracy.relative_error);
   };
 }
 

@@ -19,8 +19,7 @@ constexpr std::size_t most_chains = 1024;
 // Each receiver samples every source by each chain that may lead to it.
 constexpr std::size_t most_sources_of_chains = 4096;
 
-// The work of the search: a beam that is clipped to a side counts 1, about 0.4 us, and its flux 16 more. Single mirrors
-// may take as much again.
+// The work of the search after single mirrors: a beam that is clipped to a side counts 1, and its flux 16 more.
 constexpr std::size_t most_work = 5'000'000;
 constexpr std::size_t work_of_flux = 16;
 
@@ -283,7 +282,6 @@ class ChainSearch {
   MirrorChains run();
 
  private:
-  void rank_sources();
   QueuedChain continued(const QueuedChain& before, std::size_t side);
   double share_of(const Beam& beam) const { return beam.flux.mean() / sources_[beam.source].flux.mean(); }
   void add(QueuedChain candidate);
@@ -301,7 +299,6 @@ class ChainSearch {
   double most_reflectance_ = 0;
   std::size_t work_ = 0;
   double reflected_ = 0;        // W, straight from the sources, mean of the bands
-  double unranked_ = 0;         // W, flux of the sources that are not ranked
   std::vector<Spectrum> left_;  // W, from each side
   std::set<QueuedChain> queue_;
   std::size_t number_ = 0;
@@ -317,27 +314,11 @@ ChainSearch::ChainSearch(const Scene& scene, std::span<const LightSource> source
     most_reflectance_ = std::max(most_reflectance_, side.reflectance);
   }
   left_.assign(sides_.size(), Spectrum::Zero(bands));
-  for (const LightSource& source : sources) sources_.push_back(flux_of(source, bands));
-  rank_sources();
-}
-
-// The sun and the strongest sources, as many as there is work for. No face of a polygon is ranked without the others.
-void ChainSearch::rank_sources() {
-  const auto rank = [](const SourceFlux& light) {
-    return std::pair(!light.source->extent().direction, -light.flux.mean());
-  };
-  std::stable_sort(sources_.begin(), sources_.end(),
-                   [&](const SourceFlux& a, const SourceFlux& b) { return rank(a) < rank(b); });
-  const std::size_t work_of_source = (1 + work_of_flux) * std::max<std::size_t>(1, sides_.size());
-  const std::size_t most = std::min(sources_.size(), std::max<std::size_t>(1, most_work / work_of_source));
-  std::set<std::uint32_t> ranked;
-  for (std::size_t k = 0; k < most; ++k) ranked.insert(sources_[k].source->id());
-  for (std::size_t k = most; k < sources_.size(); ++k) {
-    ranked.erase(sources_[k].source->id());
-    unranked_ += sources_[k].flux.mean();
+  for (const LightSource& source : sources) {
+    sources_.push_back(flux_of(source, bands));
+    found_.ranked.push_back(source.id());
   }
-  sources_.resize(most);
-  found_.ranked.assign(ranked.begin(), ranked.end());
+  std::sort(found_.ranked.begin(), found_.ranked.end());
 }
 
 // With one mirror more, nearest to the receiver; and the beams that get there.
@@ -457,15 +438,10 @@ MirrorChains ChainSearch::run() {
     found_.chains.push_back(next.chain);
     found_.chains.back().beyond = light_beyond(next.chain.mirrors.size(), add_longer(next));
   }
-  // Light of sources that are not ranked is left out to the same extent.
-  double ranked = 0;
-  for (const SourceFlux& light : sources_) ranked += light.flux.mean();
-  const double all = ranked > 0 ? 1 + unranked_ / ranked : 1;
   double left = 0;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     if (!(left_[k] > 0).any()) continue;
     left += left_[k].mean();
-    left_[k] *= all;
     found_.unfollowed.push_back({corners_[k], left_[k] / area_vector(corners_[k]).norm()});
   }
   found_.unfollowed_share = reflected_ > 0 ? left / reflected_ : 0;

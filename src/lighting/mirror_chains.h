@@ -49,7 +49,7 @@ struct UnfollowedLight {
 /// outlines of the mirrors before it limit; occlusion is not considered.
 struct MirrorChains {
   std::vector<MirrorChain> chains;
-  std::vector<std::uint32_t> ranked;  ///< LightSource::id() of the sources whose beams were tested, ascending
+  std::vector<std::uint32_t> ranked;  ///< LightSource::id() of the sources that were given, ascending
   std::vector<UnfollowedLight> unfollowed;
   double unfollowed_share = 0;  ///< its flux, relative to the flux that mirrors reflect straight from the sources
   bool is_cut = false;          ///< there are more chains than are followed
@@ -57,8 +57,7 @@ struct MirrorChains {
 
 /// Up to 1,024 chains of up to most_mirrors, the product of whose reflectances is least_reflectance or more. Best-first
 /// search over beams (Heckbert and Hanrahan 1984): a chain carries no more than the shorter one that it continues. The
-/// search ends after a fixed amount of work, about 2 s; chains that it has not reached count as unfollowed. Of very
-/// many sources it tests the strongest. O(sources + chains x mirrors).
+/// search ends after a fixed amount of work; chains that it has not reached count as unfollowed. O(sources x mirrors).
 MirrorChains mirror_chains(const Scene& scene, std::span<const LightSource> sources);
 
 }  // namespace patchlight

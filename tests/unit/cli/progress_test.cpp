@@ -43,7 +43,7 @@ TEST(Progress, NamesTheMesh) {
     ProgressLine line(ProgressShown::line);
     line.expect(stages);
     line.show({.stage = Stage::form_factors}, 0);
-    line.next_mesh(0.5, 1);
+    line.next_mesh(std::exp2(2.0 / 3), 1);  // half of the work is done
     line.show({.stage = Stage::form_factors}, 1);
   }
   const std::string text = testing::internal::GetCapturedStderr();
