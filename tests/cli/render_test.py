@@ -209,7 +209,7 @@ class RenderTest(ToolTest):
         with subprocess.Popen(command, cwd=self.folder, stdout=theirs, stderr=theirs) as process:
             os.close(theirs)
             shown = b""
-            while not re.search(rb"render [7-9]\d %", shown):  # the first samples of each pixel are there
+            while not re.search(rb"render, [7-9]\d %", shown):  # the first samples of each pixel are there
                 shown += os.read(ours, 4096)
             process.send_signal(signal.SIGINT)
             while True:
