@@ -6,11 +6,15 @@
 #include "base/parallel.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/polygon_mesh.h"
+#include "scene/extent.h"
+#include "scene/face_tree.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -203,44 +207,66 @@ std::vector<OutlineEdge> sorted_edges(const Scene& scene, const OutlineCorners& 
   return edges;
 }
 
-// The edges of all polygons, whichever of their sides are kept.
+// The edges of all polygons, whichever of their sides are kept. A search finds the edges at a place, of one direction.
 class AllEdges {
  public:
-  AllEdges(std::span<const Outline> outlines, const OutlineCorners& corners, std::span<const std::uint32_t> place)
-      : outlines_(outlines), corners_(corners) {
-    for (std::uint32_t p = 0; p < outlines.size(); ++p) {
-      for (std::uint32_t c = corners.first[p]; c < corners.first[p + 1]; ++c) {
-        const auto [low, high] = std::minmax({place[c], place[corners.next(p, c)]});
-        edges_.push_back({low, high, p, c});
-      }
-    }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
-      return std::tuple(a.low, a.high, a.corner) < std::tuple(b.low, b.high, b.corner);
-    });
-  }
+  AllEdges(const Scene& scene, std::span<const Outline> outlines, const OutlineCorners& corners)
+      : outlines_(outlines), corners_(corners), near_(1e-6 * extent_of(scene)), tree_(flat_edges()) {}
 
   // Does a third polygon rise from the edge between two, by over a tenth of a degree, on their lit side? A slab that
-  // ends at two walls, one above the other, parts the light of the stories.
+  // ends at two walls, one above the other, parts the light of the stories. Its edge may be longer than theirs, or one
+  // of several along them: the middle decides.
   bool wall_between(const OutlineEdge& a, const OutlineEdge& b, Side side) const {
     const double sign = side == Side::front ? 1 : -1;
-    const auto range = std::equal_range(edges_.begin(), edges_.end(), Edge{a.low, a.high, 0, 0}, before);
-    return std::any_of(range.first, range.second, [&](const Edge& edge) {
-      if (edge.polygon == a.polygon || edge.polygon == b.polygon) return false;
-      const Vector inward = way_in(outlines_[edge.polygon], edge.corner - corners_.first[edge.polygon]);
-      const auto rises = [&](std::uint32_t from) { return sign * inward.dot(outlines_[from].normal) > 2e-3; };
-      return rises(a.polygon) && rises(b.polygon);
+    const auto [from, to] = ends_of(a.polygon, a.corner);
+    const Point middle = 0.5 * (from + to);
+    const FaceQuery query{
+        .box = with_margin(Box(middle, middle), near_), .normal = (to - from).normalized(), .tilt = 0.01};
+    bool found = false;
+    tree_.for_each(query, [&](std::size_t corner) {
+      const std::uint32_t polygon = polygons_[corner];
+      if (found || polygon == a.polygon || polygon == b.polygon || !is_on(middle, corner)) return;
+      const Vector inward = way_in(outlines_[polygon], corner - corners_.first[polygon]);
+      const auto rises = [&](std::uint32_t face) { return sign * inward.dot(outlines_[face].normal) > 2e-3; };
+      found = rises(a.polygon) && rises(b.polygon);
     });
+    return found;
   }
 
  private:
-  struct Edge {
-    std::uint32_t low, high, polygon, corner;
-  };
-  static bool before(const Edge& a, const Edge& b) { return std::tuple(a.low, a.high) < std::tuple(b.low, b.high); }
+  std::array<Point, 2> ends_of(std::uint32_t polygon, std::size_t corner) const {
+    const std::vector<Point>& of_polygon = outlines_[polygon].corners;
+    const std::size_t k = corner - corners_.first[polygon];
+    return {of_polygon[k], of_polygon[(k + 1) % of_polygon.size()]};
+  }
+
+  // As faces without area, whose normals are the directions of the edges.
+  std::vector<FlatFace> flat_edges() {
+    std::vector<FlatFace> edges;
+    for (std::uint32_t p = 0; p < outlines_.size(); ++p) {
+      for (std::uint32_t c = corners_.first[p]; c < corners_.first[p + 1]; ++c) {
+        const auto [from, to] = ends_of(p, c);
+        edges.push_back(
+            {.box = Box(from, from).extend(to), .normal = (to - from).normalized(), .mean = from, .farthest = to});
+        polygons_.push_back(p);
+      }
+    }
+    return edges;
+  }
+
+  // Is a point on the edge after this corner?
+  bool is_on(const Point& point, std::size_t corner) const {
+    const auto [from, to] = ends_of(polygons_[corner], corner);
+    const Vector along = to - from;
+    const double t = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    return (point - from - t * along).norm() <= near_;
+  }
 
   std::span<const Outline> outlines_;
   const OutlineCorners& corners_;
-  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> polygons_;  // per corner
+  double near_;                          // meters
+  FaceTree tree_;
 };
 
 // Per edge the edge of the smooth neighbor, or none.
@@ -283,7 +309,7 @@ std::vector<std::uint32_t> unite(const OutlineCorners& corners, std::span<const 
 // - they have the same material and traverse the edge in opposite directions;
 // - no other polygon of that material has the edge;
 // - their normals differ by less than 30 degrees;
-// - no third polygon with the same edge, from end to end, rises from it on this side.
+// - no third polygon with an edge through its middle rises from it on this side.
 // They share the corners too. All other points are separate. Positions are compared bit by bit.
 BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> outlines, Side side,
                                  std::span<const std::uint8_t> kept) {
@@ -295,7 +321,7 @@ BoundaryVertices number_boundary(const Scene& scene, std::span<const Outline> ou
   const std::vector<std::uint32_t> place = weld(outlines);
   const std::vector<OutlineEdge> edges = sorted_edges(scene, corners, side, kept, place);
   const std::vector<std::uint32_t> neighbor =
-      smooth_neighbors(outlines, edges, place.size(), AllEdges(outlines, corners, place), side);
+      smooth_neighbors(outlines, edges, place.size(), AllEdges(scene, outlines, corners), side);
   const std::vector<std::uint32_t> shared = unite(corners, neighbor);
 
   // 2. The first polygon at a corner or an edge makes the vertices; the others use them, on an edge in reverse order.

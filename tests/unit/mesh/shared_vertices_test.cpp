@@ -119,6 +119,28 @@ TEST(SharedVertices, AWallOnTheEdgeSeparatesTheSideOnWhichItStands) {
   }
 }
 
+// The walls of two stories are cut beside a window, and the ceiling at them is not; or walls are longer than rooms.
+TEST(SharedVertices, AWallOnPartOfTheEdgeSeparatesIfItIsAtTheMiddle) {
+  const auto shared_with_wall = [](double begin, double end, double height) {
+    Scene scene = hinge(0);
+    scene.vertices.insert(scene.vertices.end(),
+                          {{1, begin, height}, {1, end, height}, {1, end, 1 + height}, {1, begin, 1 + height}});
+    scene.materials.resize(2);
+    scene.polygons.push_back(scene.polygons[1]);
+    scene.polygons[2].material = 1;
+    scene.polygons[2].corners = {6, 7, 8, 9};
+    EXPECT_EQ(shared_at_hinge(scene, Side::back), 11U);
+    return shared_at_hinge(scene, Side::front);
+  };
+  EXPECT_EQ(shared_with_wall(-0.5, 1.5, 0), 0U);
+  EXPECT_EQ(shared_with_wall(0, 1.5, 0), 0U);
+  EXPECT_EQ(shared_with_wall(0, 0.7, 0), 0U);
+  EXPECT_EQ(shared_with_wall(0, 0.5, 0), 0U);
+  EXPECT_EQ(shared_with_wall(0, 0.3, 0), 11U);
+  EXPECT_EQ(shared_with_wall(1, 2, 0), 11U);
+  EXPECT_EQ(shared_with_wall(-0.5, 1.5, 0.01), 11U);
+}
+
 // A sheet of another paint in the common plane takes no light from either.
 TEST(SharedVertices, AThirdPolygonInTheirPlaneDoesNotSeparate) {
   Scene scene = hinge(0);
