@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t most_chains = 1024;
 
-// Each receiver samples every source by each chain that may lead to it.
-constexpr std::size_t most_sources_of_chains = 4096;
+// Each receiver samples every source by each chain that may lead to it: 64 sources by all chains, or more by fewer.
+constexpr std::size_t most_sources_of_chains = 64 * most_chains;
 
 // The work of the search after single mirrors: a beam that is clipped to a side counts 1, and its flux 16 more.
 constexpr std::size_t most_work = 5'000'000;

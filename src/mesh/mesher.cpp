@@ -4,6 +4,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "base/tolerances.h"
 #include "mesh/cut_polygons.h"
 #include "mesh/polygon_mesh.h"
 #include "scene/extent.h"
@@ -211,7 +212,10 @@ std::vector<OutlineEdge> sorted_edges(const Scene& scene, const OutlineCorners& 
 class AllEdges {
  public:
   AllEdges(const Scene& scene, std::span<const Outline> outlines, const OutlineCorners& corners)
-      : outlines_(outlines), corners_(corners), near_(1e-6 * extent_of(scene)), tree_(flat_edges()) {}
+      : outlines_(outlines),
+        corners_(corners),
+        near_(tolerance_of_coordinates * extent_of(scene)),
+        tree_(flat_edges()) {}
 
   // Does a third polygon rise from the edge between two, by over a tenth of a degree, on their lit side? A slab that
   // ends at two walls, one above the other, parts the light of the stories. Its edge may be longer than theirs, or one

@@ -152,6 +152,25 @@ TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
   expect_error_of_missing_light(facets, lighting);
 }
 
+// Facets of one plane have no reflections among each other: all light of a hundred lamps is followed.
+TEST(MirrorChains, AllSingleReflectionsOfManyLampsInManyMirrorsAreFollowed) {
+  constexpr int edge = 10;
+  Scene scene = empty_scene({mirror(0.9), grey(0.5)});
+  for (int x = 0; x < edge; ++x)
+    for (int y = 0; y < edge; ++y)
+      scene =
+          with_quad(std::move(scene), {Point(x, y, 0), Point(x + 1, y, 0), Point(x + 1, y + 1, 0), Point(x, y + 1, 0)});
+  scene = with_square(std::move(scene), Point(5, 5, 3), 1, 1);
+  for (int k = 0; k < edge * edge; ++k)
+    scene.luminaires.push_back(point_light(Point(k % edge + 0.5, k / edge + 0.5, 2)));
+  const MirrorChains found = chains_in(scene);
+  EXPECT_FALSE(found.is_cut);
+  EXPECT_EQ(found.unfollowed_share, 0);
+  std::size_t pairs = 0;
+  for (const MirrorChain& chain : found.chains) pairs += chain.sources.size();
+  EXPECT_EQ(pairs, edge * edge * scene.luminaires.size());
+}
+
 // The beams of 64 lamps to the facets are too many to be tested.
 TEST(MirrorChains, OfBeamsThatAreTooManyAreInTheError) {
   std::vector<Point> lamps;
