@@ -204,15 +204,25 @@ namespace {
 // The largest error of a propagated error, as a share of its reflected part.
 constexpr double bar_tolerance = 0.05;
 
+// The largest residual where the error has no bound.
+constexpr double residual_tolerance = 0.02;
+
 // The share that solved bands leave out of those that they span: the others are combined, and checked.
 constexpr double left_out = 0.3;
 
+// Several irradiances are followed together, in fields of up to 32 MB: one pass over the rows serves them all.
+constexpr Eigen::Index values_at_once = 1 << 22;
+
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem,
                      std::optional<double> largest_row_sum) {
+  // Only a reciprocal transport has a bound that is cheap to find. The residual of others is relative to that of the
+  // source, R F n, so that it resolves light which is even over a room.
+  const bool has_bound = transport.is_reciprocal();
+  if (!has_bound) largest_row_sum = std::numeric_limits<double>::infinity();
   // Few directions: by a million patches these take most of the memory.
   return solve(transport, problem,
                {.solver = usual_solver(transport, problem),
-                .relative_error = bar_tolerance,
+                .relative_error = has_bound ? bar_tolerance : residual_tolerance,
                 .restart = 8,
                 .largest_row_sum = largest_row_sum,
                 .patch_bounds = false});
@@ -345,6 +355,29 @@ Field followed(const TransportOperator& transport, const RadiosityProblem& probl
   return irradiance + InBands(transport, of_irradiance, row_sum).irradiance();
 }
 
+std::vector<Field> followed(const TransportOperator& transport, const RadiosityProblem& problem,
+                            std::vector<Field> irradiances) {
+  if (irradiances.empty()) return {};
+  const Eigen::Index bands = irradiances.front().cols();
+  const auto at_once = static_cast<std::size_t>(std::max<Eigen::Index>(1, values_at_once / irradiances.front().size()));
+  // Many bands are combinations of a few of them.
+  const std::size_t most = bands > few_bands ? 1 : at_once;
+  for (std::size_t first = 0; first < irradiances.size(); first += most) {
+    const std::span<Field> some = std::span(irradiances).subspan(first, std::min(most, irradiances.size() - first));
+    Field together(irradiances.front().rows(), static_cast<Eigen::Index>(some.size()) * bands);
+    std::vector<Eigen::Index> band_of_column;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      together.middleCols(static_cast<Eigen::Index>(k) * bands, bands) = some[k];
+      for (Eigen::Index band = 0; band < bands; ++band) band_of_column.push_back(band);
+    }
+    const Field of_some =
+        followed(transport, {of_bands(problem.scattering, band_of_column), {}, problem.area}, together);
+    for (std::size_t k = 0; k < some.size(); ++k)
+      some[k] = of_some.middleCols(static_cast<Eigen::Index>(k) * bands, bands);
+  }
+  return irradiances;
+}
+
 namespace {
 
 // Draws of the errors: a root mean square over eight is right to 25 %.
@@ -374,11 +407,6 @@ Field row_corrections(const RowTransport& transport, const Eigen::VectorXd& area
   return lambda;
 }
 
-// One column of `field` per draw, `column` of each.
-Field column_of_draws(const Field& field, Eigen::Index columns, Eigen::Index column) {
-  return field(Eigen::all, Eigen::seqN(column, field.cols() / columns, columns));
-}
-
 // The changes of the light by draws of the errors, (D + S (lambda_i + lambda_j)) B = D B + lambda o (S B) + S (lambda o
 // B), as irradiance.
 struct Draws {
@@ -389,43 +417,14 @@ struct Draws {
   Field lambda;  // a column for each draw; none where nothing is closed
   Field H;       // F B, the same
 
-  Field of_band(Eigen::Index band) const;
-  Field of_draw(Eigen::Index draw) const;
+  Field of(Eigen::Index draw) const;
 };
 
-// The changes of the irradiance in one band, by all draws.
-Field Draws::of_band(Eigen::Index band) const {
-  Field irradiance = column_of_draws(drawn, B.cols() + 1, band).colwise() / problem.area.array();
-  if (lambda.size() > 0) irradiance += lambda.colwise() * H.col(band) + transport.apply(lambda.colwise() * B.col(band));
-  return irradiance;
-}
-
-// The changes in all bands, by one draw.
-Field Draws::of_draw(Eigen::Index draw) const {
+// The change of the irradiance by one draw.
+Field Draws::of(Eigen::Index draw) const {
   Field irradiance = drawn.middleCols(draw * (B.cols() + 1), B.cols()).colwise() / problem.area.array();
   if (lambda.size() > 0) irradiance += H.colwise() * lambda.col(draw) + transport.apply(B.colwise() * lambda.col(draw));
   return irradiance;
-}
-
-// Follows each draw through all reflections. Few bands are followed one by one. Many bands are followed by draws; the
-// others are combinations of a few.
-std::vector<Field> follow_draws(const Draws& draws_of, const SpanningBands& spanning) {
-  const RadiosityProblem& problem = draws_of.problem;
-  const Eigen::Index bands = problem.scattering.reflectance.cols();
-  std::vector<Field> followed_draws(draws, Field(problem.area.size(), bands));
-  if (spanning.spans_all()) {
-    for (Eigen::Index band = 0; band < bands; ++band) {
-      const Scattering of_draws = of_bands(problem.scattering, std::vector<Eigen::Index>(draws, band));
-      const Field e = followed(draws_of.transport, {of_draws, {}, problem.area}, draws_of.of_band(band));
-      for (std::size_t draw = 0; draw < draws; ++draw)
-        followed_draws[draw].col(band) = e.col(static_cast<Eigen::Index>(draw));
-    }
-    return followed_draws;
-  }
-  for (std::size_t draw = 0; draw < draws; ++draw)
-    followed_draws[draw] =
-        followed(draws_of.transport, problem, spanning.all_bands(draws_of.of_draw(static_cast<Eigen::Index>(draw))));
-  return followed_draws;
 }
 
 }  // namespace
@@ -450,12 +449,14 @@ std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly
               {},        {}};
   // 2. With rows closed.
   if (solved.closed) {
-    drawn.lambda =
-        row_corrections(transport, problem.area, column_of_draws(drawn.drawn, light.cols() + 1, light.cols()));
+    const Field of_ones = drawn.drawn(Eigen::all, Eigen::seqN(light.cols(), draws, light.cols() + 1));
+    drawn.lambda = row_corrections(transport, problem.area, of_ones);
     drawn.H = transport.apply(light);
   }
   // 3. Through all reflections.
-  return follow_draws(drawn, spanning);
+  std::vector<Field> errors;
+  for (Eigen::Index draw = 0; draw < draws; ++draw) errors.push_back(spanning.all_bands(drawn.of(draw)));
+  return followed(transport, problem, std::move(errors));
 }
 
 Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
@@ -469,14 +470,11 @@ std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTranspo
                                          const RadiosityProblem& problem, const Field& standard_error) {
   if (standard_error.isZero(0)) return std::vector<Field>(draws, standard_error);
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
-  std::vector<Field> followed_draws;
-  for (std::uint64_t draw = 0; draw < draws; ++draw) {
-    Field error = standard_error;
+  std::vector<Field> errors(draws, standard_error);
+  for (std::uint64_t draw = 0; draw < draws; ++draw)
     for (PatchIndex i = 0; i < mesh.size(); ++i)
-      if ((hash({seed, keys[i], draw, stream::signs_of_direct_light}) & 1) != 0) error.row(i) *= -1;
-    followed_draws.push_back(followed(transport, problem, error));
-  }
-  return followed_draws;
+      if ((hash({seed, keys[i], draw, stream::signs_of_direct_light}) & 1) != 0) errors[draw].row(i) *= -1;
+  return followed(transport, problem, std::move(errors));
 }
 
 namespace {

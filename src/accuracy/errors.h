@@ -70,6 +70,9 @@ InNeededBands in_needed_bands(const SolvedProblem& solved);
 /// reflected part in each band. With many bands only some are solved, and the others are combinations of them if these
 /// are accurate enough.
 Field followed(const TransportOperator& transport, const RadiosityProblem& problem, const Field& irradiance);
+/// The same for several irradiances; those of few bands share each pass over the rows.
+std::vector<Field> followed(const TransportOperator& transport, const RadiosityProblem& problem,
+                            std::vector<Field> irradiances);
 
 /// The mean of the squares over draws, per patch and band.
 Field mean_square(std::span<const Field> draws);

@@ -229,10 +229,10 @@ struct Gather {
   const ShadowRays& shadow_rays;
   const HemisphereRays& hemisphere;
   const GatherOptions& options;
-  const TracingFrame frame;
+  const Occluder& occluder;
 
   // A sensor that is nearer to a polygon's plane lies on it: the occluder's own limit.
-  double tolerance() const { return tolerance_of_shapes / frame.scale; }
+  double tolerance() const { return tolerance_of_shapes / occluder.frame().scale; }
 };
 
 // How unevenly a sensor sees a patch, squared: e^2 / (e^2 + d^2), e its longest edge and d its distance. From afar all
@@ -328,7 +328,7 @@ std::vector<SeenPatch> add_bright_patches(const Gather& gather, const Sensor& se
                                           const Spectrum& limit, double times, std::uint32_t stage, Reading& reading,
                                           ErrorsOfPatches& errors) {
   const std::vector<ChosenSource> chosen =
-      chosen_sources(sources, limit, gather, times, key_of(sensor, gather.frame, gather.options.seed, stage));
+      chosen_sources(sources, limit, gather, times, key_of(sensor, gather.occluder.frame(), gather.options.seed, stage));
   const std::vector<VisibleShare> shares = gather.shadow_rays.visible_shares(sensor, chosen, stage);
   const Eigen::Index bands = reading.mean.size();
   Spectrum heaviest = Spectrum::Zero(bands);
@@ -482,7 +482,7 @@ Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
 
 Reading read_sensor(const Gather& gather, const Sensor& sensor) {
   const Spectrum limit = limit_of_bright(gather, sensor);
-  const Sources sources = sources_before(sensor, gather.light.mesh, gather.light.radiosity, limit, gather.tolerance());
+  const Sources sources = sources_before(sensor, gather.light.mesh, gather.light.radiosity, limit, gather.occluder);
   Reading first = estimate(gather, sensor, sources, limit, 1, 0);
   const double more =
       std::min((wanted_factor(first, gather.options) - 1) * first.rays, gather.options.most_rays - first.rays);
@@ -524,7 +524,7 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
   const Light light{mesh, radiosity,
                     options.slopes ? slopes_of(mesh, radiosity, occluder, options.errors, observer) : Slopes{},
                     options.errors, optics.follows_reflections() ? &mirrored : nullptr};
-  const Gather gather{light, shadow_rays, hemisphere, options, occluder.frame()};
+  const Gather gather{light, shadow_rays, hemisphere, options, occluder};
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer,
                [&](std::size_t k) { readings[k] = read_sensor(gather, sensors[k]); });

@@ -2,6 +2,7 @@
 
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "base/tolerances.h"
 #include "form_factor/point_polygon.h"
 #include "visibility/walk.h"
 
@@ -77,7 +78,9 @@ std::vector<Point> outline_above_horizon(const PatchMesh& mesh, PatchIndex patch
 }
 
 Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity, const Spectrum& limit,
-                       double tolerance) {
+                       const Occluder& occluder) {
+  // A sensor that is nearer to a polygon's plane lies on it: the occluder's own limit.
+  const double tolerance = tolerance_of_shapes / occluder.frame().scale;
   Sources found;
   found.unoccluded = Spectrum::Zero(radiosity.cols());
   for (PatchIndex j = 0; j < mesh.size(); ++j) {
@@ -87,7 +90,7 @@ Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldV
     }
     if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= tolerance) continue;
     std::vector<Point> outline = outline_above_horizon(mesh, j, sensor);
-    if (outline.empty()) continue;
+    if (outline.empty() || occluder.hides(std::span(&sensor.point, 1), outline, std::span(&mesh.polygon[j], 1))) continue;
     const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline);
     if (!(form_factor > 0)) continue;
     found.unoccluded += form_factor * radiosity.row(j);

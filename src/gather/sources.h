@@ -34,10 +34,10 @@ struct Sources {
   bool is_rest_lit = false;    ///< some other patch sends light as well
 };
 
-/// Finds the patches above `limit` that a sensor may see: sensor and patch lie before each other by more than
-/// `tolerance`, in meters. No side of a polygon on which a sensor lies counts. O(patches).
+/// Finds the patches above `limit` that a sensor may see: sensor and patch lie before each other, and no single polygon
+/// surely hides the patch. No side of a polygon on which a sensor lies counts. O(patches).
 Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity, const Spectrum& limit,
-                       double tolerance);
+                       const Occluder& occluder);
 
 /// The estimate by shadow rays to a source, weighted by geometry terms.
 struct VisibleShare {

@@ -231,10 +231,11 @@ struct SampleSets {
   std::size_t samples() const { return count * each; }
 };
 
-// Multiples of the samples: of a luminaire and the sun on a patch where rays have to find the shadows, and of a sphere
-// at a point.
+// Multiples of the samples: of a luminaire and the sun on a patch where rays have to find the shadows, of a sphere at a
+// point, and of the sky at a point, which no neighbors average.
 constexpr int effort_for_luminaires = 4;
 constexpr int effort_for_sun = 64;
+constexpr int effort_for_sky_at_point = 4;
 
 struct Estimator {
   const LightSampler& lights;
@@ -261,7 +262,7 @@ Estimator estimator_for(const LightSampler& lights, const LightingOptions& optio
   int most = 1;
   if (!lighting.luminaires.empty()) most = std::max(most, effort_for_luminaires * options.luminaire_samples);
   if (lighting.sun) most = std::max(most, effort_for_sun * options.sun_samples);
-  if (lighting.sky) most = std::max(most, options.sky_samples);
+  if (lighting.sky) most = std::max(most, effort_for_sky_at_point * options.sky_samples);
   const std::uint32_t count = std::max(1U, (static_cast<std::uint32_t>(most) << doublings) / replicates_on_patch);
   for (std::uint32_t k = 0; k < scrambles; ++k)
     estimator.points.push_back(scrambled_sobol(count, hash({options.seed, k})));
@@ -350,7 +351,8 @@ Estimate Estimator::by_sphere(const LightSource& source, const Receiver& receive
 Estimate Estimator::by_sky(const Receiver& receiver, std::uint32_t key, double effort) const {
   const bool is_point = receiver.is_point();
   const SkyAim aim = sky_aim(lighting(), receiver, is_point ? AimFor::points : AimFor::patch);
-  const SampleSets sets = patchlight::sets_of(effort * options.sky_samples, is_point);
+  const double samples = effort * (is_point ? effort_for_sky_at_point : 1) * options.sky_samples;
+  const SampleSets sets = patchlight::sets_of(samples, is_point);
   SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
   const Field arriving = replicates(key, sets, [&](std::span<const ReceiverSamples> of_sets) {
     Field means(static_cast<Eigen::Index>(of_sets.size()), lighting().bands);

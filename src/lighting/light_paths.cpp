@@ -85,6 +85,10 @@ bool LightPaths::may_be_hidden(std::span<const Point> receiver, const Vector& no
   return reaches_between(*opaque_) || (clear_ && reaches_between(*clear_));
 }
 
+bool LightPaths::hides(std::span<const Point> from, std::span<const Point> to) const {
+  return opaque_->hides(from, to);
+}
+
 bool LightPaths::is_covered_in_part(PolygonIndex polygon, Side side) const {
   return opaque_->is_covered_in_part(polygon, side);
 }

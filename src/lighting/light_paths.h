@@ -53,6 +53,9 @@ class LightPaths {
   /// the scene's extent. Then all rays between them are free. `normal` is the receiver's.
   bool may_be_hidden(std::span<const Point> receiver, const Vector& normal, const Point& centre, double radius) const;
 
+  /// True if one opaque polygon surely blocks all segments between the convex hulls of two groups of points.
+  bool hides(std::span<const Point> from, std::span<const Point> to) const;
+
   /// True when another polygon lies over this place of a side of a polygon, in one plane with it.
   bool is_covered(PolygonIndex polygon, Side side, const Point& place) const;
   /// True when that is so anywhere on the side.

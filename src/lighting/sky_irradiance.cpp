@@ -139,6 +139,12 @@ Spectrum brightest_of(const Lighting& lighting, const SurfacePoint& at, const Op
   return most;
 }
 
+std::vector<Point> corners_of(const Opening& opening) {
+  std::vector<Point> corners;
+  for (const auto& triangle : opening.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  return corners;
+}
+
 }  // namespace
 
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) {
@@ -149,7 +155,10 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
     const bool is_before = rises_above(opening, at.point, at.normal, tolerance_of_shapes * std::sqrt(square));
-    const double weight = is_before && !is_own ? apparent_size(opening, at.point) : 0;
+    // At a point rays that a single wall blocks would count as light that they may have missed.
+    const bool is_hidden = what == AimFor::points && is_before && !is_own &&
+                           lighting.paths.hides(std::span(&at.point, 1), corners_of(opening));
+    const double weight = is_before && !is_own && !is_hidden ? apparent_size(opening, at.point) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
     sum += weight;

@@ -151,13 +151,13 @@ std::vector<Field> draw_reflected_errors(const Gather& by, const ConservedFlux& 
     return error;
   };
   const Field none = Field::Zero(single.of_rows.rows(), single.of_rows.cols());
-  std::vector<Field> draws;
-  for (std::uint64_t draw = 0; draw < number_of_draws(by.mesh.size()); ++draw) {
-    const Field error = flux.completed(with_signs(single.of_rows, draw, stream::signs_of_rows), none, problem.area) +
-                        with_signs(single.of_lights, draw, stream::signs_of_lights);
-    draws.push_back(followed(by.transport, problem, error) - error);
-  }
-  return draws;
+  std::vector<Field> errors;
+  for (std::uint64_t draw = 0; draw < number_of_draws(by.mesh.size()); ++draw)
+    errors.push_back(flux.completed(with_signs(single.of_rows, draw, stream::signs_of_rows), none, problem.area) +
+                     with_signs(single.of_lights, draw, stream::signs_of_lights));
+  std::vector<Field> reflected = followed(by.transport, problem, errors);
+  for (std::size_t draw = 0; draw < errors.size(); ++draw) reflected[draw] -= errors[draw];
+  return reflected;
 }
 
 // The variance of the irradiance by bright patches that no ray was sent towards, of n rays over the hemisphere: its

@@ -296,11 +296,6 @@ bool Coverings::lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) c
   return std::binary_search(over_it.begin(), over_it.end(), upper);
 }
 
-std::span<const PolygonIndex> Coverings::over_side(PolygonIndex polygon, Side side) const {
-  if (over.empty()) return {};
-  return over[2 * std::size_t{polygon} + static_cast<std::size_t>(side)];
-}
-
 Coverings find_coverings(const Scene& scene, const KeptSides& kept) {
   const std::size_t count = scene.polygons.size();
   std::vector<FlatFace> faces(count);

@@ -17,7 +17,10 @@ constexpr double in_plane_tolerance = 3e-7;
 struct Coverings {
   std::vector<std::vector<PolygonIndex>> over;  ///< at 2 * polygon + side, ascending; empty when nothing overlaps
 
-  std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const;
+  std::span<const PolygonIndex> over_side(PolygonIndex polygon, Side side) const {
+    if (over.empty()) return {};
+    return over[2 * std::size_t{polygon} + static_cast<std::size_t>(side)];
+  }
 
   /// True when `upper` lies over some place of this side of `polygon`.
   bool lies_over(PolygonIndex upper, PolygonIndex polygon, Side side) const;

@@ -61,7 +61,9 @@ double row_sum(const RayRows& rows, PatchIndex i) {
 }
 
 using AddRows = void (*)(const RayRows& rows, const Columns& columns, double factor, PatchRange patches);
-constexpr std::array<AddRows, 4> add_rows_of_width{add_rows<1>, add_rows<2>, add_rows<3>, add_rows<4>};
+// Up to 64 bytes, a cache line.
+constexpr std::array<AddRows, 8> add_rows_of_width{add_rows<1>, add_rows<2>, add_rows<3>, add_rows<4>,
+                                                   add_rows<5>, add_rows<6>, add_rows<7>, add_rows<8>};
 
 // Some columns of a field, row by row without a gap, in large pages.
 LargeArray<double> packed(const FieldView& field, Eigen::Index first, Eigen::Index width) {

@@ -80,9 +80,22 @@ std::vector<std::uint8_t> on_convex_hull(const Scene& scene) {
   return result;
 }
 
+void CoveredPlaces::add(std::span<const Point> corners) {
+  polygons.push_back(flat_polygon(corners));
+  Eigen::AlignedBox3d box;
+  for (const Point& corner : corners) box.extend(corner);
+  // A place may lie before the plane by in_plane_tolerance, and single precision is coarser far from the center.
+  const double farthest = std::max(1.0, std::max(box.max().maxCoeff(), -box.min().minCoeff()));
+  const Vector margin = Vector::Constant(2 * in_plane_tolerance * farthest);
+  boxes.emplace_back((box.min() - margin).cast<float>(), (box.max() + margin).cast<float>());
+}
+
 bool CoveredPlaces::covers(PolygonIndex polygon, Side side, const Point& place) const {
   const auto over = coverings.over_side(polygon, side);
-  return std::any_of(over.begin(), over.end(), [&](PolygonIndex other) { return contains(polygons[other], place); });
+  const Eigen::Vector3f nearby = place.cast<float>();
+  return std::any_of(over.begin(), over.end(), [&](PolygonIndex other) {
+    return boxes[other].contains(nearby) && contains(polygons[other], place);
+  });
 }
 
 bool CoveredPlaces::lie_in_one_plane(PolygonIndex a, PolygonIndex b) const {

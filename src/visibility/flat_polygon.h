@@ -40,9 +40,13 @@ std::vector<std::uint8_t> on_convex_hull(const Scene& scene);
 /// The places of polygons that another polygon covers, in recentered coordinates.
 struct CoveredPlaces {
   Coverings coverings;
-  std::vector<FlatPolygon> polygons;  ///< of the scene
+  std::vector<FlatPolygon> polygons;      ///< of the scene
+  std::vector<Eigen::AlignedBox3f> boxes;  ///< around them, a little larger: few bytes that exclude most polygons
 
   bool any() const { return !coverings.over.empty(); }
+
+  /// Appends the next polygon of the scene.
+  void add(std::span<const Point> corners);
 
   bool covers(PolygonIndex polygon, Side side, const Point& place) const;
 

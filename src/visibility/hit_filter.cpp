@@ -49,9 +49,10 @@ PATCHLIGHT_INLINE void mark_clear_hits(const RTCFilterFunctionNArguments& hits, 
 // Whether another polygon lies over the point where the ray hits the plane.
 bool is_covered(const TrianglePlane& plane, const Segment& ray, const CoveredPlaces& places) {
   const double from = plane.height(ray.from);
+  const Side side = from > 0 ? Side::front : Side::back;
+  if (places.coverings.over_side(plane.polygon, side).empty()) return false;
   const double to = plane.height(ray.to);
-  const Point place = ray.from + from / (from - to) * (ray.to - ray.from);
-  return places.covers(plane.polygon, from > 0 ? Side::front : Side::back, place);
+  return places.covers(plane.polygon, side, ray.from + from / (from - to) * (ray.to - ray.from));
 }
 
 }  // namespace

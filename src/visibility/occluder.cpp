@@ -57,7 +57,7 @@ TracedFaces::TracedFaces(const Scene& scene, const std::vector<std::uint8_t>& wi
   for (PolygonIndex p = 0; p < scene.polygons.size(); ++p) {
     std::vector<Point> points = corner_points(scene, p);
     for (Point& point : points) point = recentred(point);
-    covered_places.polygons.push_back(flat_polygon(points));
+    covered_places.add(points);
   }
 }
 
