@@ -16,7 +16,9 @@ import textwrap
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 CLI = DOCS / "reference" / "cli"
 MAN = DOCS / "man"
-SHARED = 3  # an option with the same text in so many commands stands on common-options.md
+SHARED = 3  # an option with the same text in so many commands stands on common-options.md, in two on the page of the first
+
+ALL = "All of these groups of"  # where a command takes all options of groups, in place of their names
 
 EXIT_STATUS = [
     ("0", "Success."),
@@ -138,9 +140,12 @@ def anchor(title):
     return title.lower().replace(" ", "-")
 
 
-def page_of(command, shared):
-    own = in_groups(option for option in command.options if option not in shared)
-    common = in_groups(option for option in command.options if option in shared)
+def page_of(command, homes):
+    own = in_groups(option for option in command.options if homes[option] == command.name)
+    common = {}
+    for option in command.options:
+        if homes[option] != command.name:
+            common.setdefault((homes[option], option.group), []).append(option)
     lines = [f"# patchlight {command.name}\n", command.summary + "\n", f"```sh\n{command.usage}\n```\n",
              filled(prose(command.about)) + "\n", "## Examples\n", "```sh"]
     for meaning, line in command.examples:
@@ -150,20 +155,27 @@ def page_of(command, shared):
         lines += [f"### {title}\n", entries(options)]
     if common:
         lines += ["## Options in common with other commands\n"]
-        for title, options in common.items():
-            names = ", ".join(f"`{option.names()[-1]}`" for option in options)
-            lines.append(filled(f"[{title}](common-options.md#{anchor(title)}): {names}", "- ", "  "))
+        whole = {}
+        for (home, title), options in common.items():
+            if {option for option, at in homes.items() if (at, option.group) == (home, title)} == set(options):
+                whole.setdefault(home, []).append(title)
+        for home, titles in sorted(whole.items()):
+            lines.append(filled(f"{ALL} [{home.replace('-', ' ')}]({home}.md): {', '.join(titles)}", "- ", "  "))
+        for (home, title), options in common.items():
+            if title not in whole.get(home, []):
+                names = ", ".join(f"`{option.names()[-1]}`" for option in options)
+                lines.append(filled(f"[{title}]({home}.md#{anchor(title)}): {names}", "- ", "  "))
         lines.append("")
     lines.append("The command ends with one of these codes: [exit status](exit-status.md).")
     return "\n".join(lines) + "\n"
 
 
-def common_page(commands, shared):
+def common_page(commands, homes):
     lines = ["# Common options\n", "Options with the same meaning in three or more commands. The page of each command lists "
              "the ones that it takes.\n"]
     ordered = []
     for command in commands:
-        ordered += [option for option in command.options if option in shared and option not in ordered]
+        ordered += [option for option in command.options if homes[option] == "common-options" and option not in ordered]
     for title, options in in_groups(ordered).items():
         lines += [f"## {title}\n", entries(options)]
     return "\n".join(lines).rstrip() + "\n"
@@ -278,30 +290,38 @@ def completion(commands):
                              choices="\n".join(choices), options="\n".join(names))
 
 
+def group_of_page(page, title):
+    """The options of a group on a page."""
+    return next(part for part in re.split(r"(?m)^##+ ", page) if part.splitlines()[0] == title)
+
+
 def missing_options(command, files):
     """Options that the help of a command has, but its manual page or its reference page does not."""
     manual = files[MAN / f"patchlight-{command.name}.1"]
     page = files[CLI / f"{command.name}.md"]
+    whole = re.findall(rf"{ALL} \[[a-z ]+\]\(([a-z-]+)\.md\): (.+(?:\n  .+)*)", page)
+    groups = [group_of_page(files[CLI / f"{home}.md"], title)
+              for home, titles in whole for title in " ".join(titles.split()).split(", ")]
     for name in re.findall(r"(?m)^  (?:-\w, )?(--[\w-]+)", run(command.name, "--help")):
         if not re.search(re.escape(roff(name)) + r"(?!\w|\\-)", manual):
             yield f"docs/man/patchlight-{command.name}.1 has no {name}"
-        if not re.search(re.escape(name) + r"(?![\w-])", page):
+        if not any(re.search(re.escape(name) + r"(?![\w-])", text) for text in [page, *groups]):
             yield f"docs/reference/cli/{command.name}.md has no {name}"
 
 
 def all_files():
     groups = groups_of_commands()
     commands = [command_of(name) for group in groups.values() for name, _ in group]
-    counts = {}
+    users = {}
     for command in commands:
         for option in command.options:
-            counts[option] = counts.get(option, 0) + 1
-    shared = {option for option, count in counts.items() if count >= SHARED}
-    files = {CLI / "index.md": index_page(groups), CLI / "common-options.md": common_page(commands, shared),
+            users.setdefault(option, []).append(command.name)
+    homes = {option: "common-options" if len(names) >= SHARED else names[0] for option, names in users.items()}
+    files = {CLI / "index.md": index_page(groups), CLI / "common-options.md": common_page(commands, homes),
              CLI / "exit-status.md": exit_page(), MAN / "patchlight.1": manual_of_tool(groups),
              DOCS / "patchlight.bash": completion(commands)}
     for command in commands:
-        files[CLI / f"{command.name}.md"] = page_of(command, shared)
+        files[CLI / f"{command.name}.md"] = page_of(command, homes)
         files[MAN / f"patchlight-{command.name}.1"] = manual_of(command)
     note = "<!-- scripts/make_help.py writes this page. -->\n"
     return commands, {path: note + text if path.suffix == ".md" else text for path, text in files.items()}
