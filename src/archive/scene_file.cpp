@@ -10,6 +10,7 @@
 #include "files/reason.h"
 #include "output/file/whole_file.h"
 #include "plan/survey.h"
+#include "scene/luminaire_kinds.h"
 #include "scene/photometric_web.h"
 
 #include <algorithm>
@@ -101,10 +102,8 @@ struct LightJson {
   }
 };
 
-constexpr std::array<const char*, 4> luminaire_kinds = {"point", "spot", "ies", "sphere"};  // as in the variant
-
 Json json_of_luminaire(const Luminaire& luminaire) {
-  LightJson part{{{"kind", luminaire_kinds[luminaire.light.index()]},
+  LightJson part{{{"kind", kind_of(luminaire)},
                   {"name", json_of(luminaire.name)},
                   {"place", json_of(luminaire.place)},
                   {"position", json_of(luminaire.position)},

@@ -198,6 +198,7 @@ SceneFacts scene_facts(const Scene& scene) {
           .sha256 = scene.sha256,
           .polygons = scene.polygons.size(),
           .materials = scene.materials.size(),
+          .luminaires = scene.luminaires,
           .metres_per_unit = scene.metres_per_unit,
           .up = scene.up,
           .up_stated = scene.up_stated,

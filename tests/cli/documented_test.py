@@ -75,6 +75,9 @@ class DocumentedTest(ToolTest):
         super().setUp()
         (self.folder / "meshes").symlink_to(MESHES)
         self.write("desk.pts", "0.1 0.1 0.1 0 1 0\n")
+        self.write("lamps.toml", 'up = "y"\n[[model]]\nfile = "meshes/cornell_box.obj"\n[[luminaire]]\nname = "panel"\nkind = "ies"\n'
+                                 'file = "meshes/panel.ies"\nposition = [0.3, 0.5, 0.3]\n[[luminaire]]\nkind = "point"\nlumens = 10\n'
+                                 'position = [0.1, 0.4, 0.2]\n')
 
     def tool(self, *words, codes_of_success=(0,)):
         done = self.run_tool(*words)
@@ -96,7 +99,8 @@ class DocumentedTest(ToolTest):
         self.solve("meshes/cornell_box.obj", "rgb", "--ambient-occlusion", "1m")
         self.solve("meshes/cornell_box_spectra.toml", "bands")
         self.solve("meshes/cornell_box.obj", "sky", "--set", "light.exitance=0", "--sky", "overcast:10000lx")
-        return "rgb", "bands", "sky"
+        self.solve("lamps.toml", "lamps")
+        return "rgb", "bands", "sky", "lamps"
 
     def test_results_of_solve(self):
         names = self.solved()
@@ -127,6 +131,16 @@ class DocumentedTest(ToolTest):
         self.assert_same(written, documented(text, {0}))
         self.assertLessEqual({name for one in every for name in one["FieldData"]}, set(codes(text)))
 
+    def test_luminaires_are_those_of_the_scene_file(self):
+        self.solve("lamps.toml", "lamps")
+        panel, point = self.json("lamps.json")["input"]["luminaires"]
+        self.assertEqual((panel["name"], panel["kind"], panel["position_m"], panel["aim"]), ("panel", "ies", [0.3, 0.5, 0.3], [0, -1, 0]))
+        self.assertTrue(panel["file"].endswith("panel.ies"), panel["file"])
+        self.assertEqual(panel["place"], "lamps.toml:4")
+        self.assertEqual((point["kind"], point["file"], point["position_m"]), ("point", None, [0.1, 0.4, 0.2]))
+        self.tool("check", "lamps.toml", "--json", "check.json")
+        self.assertEqual(self.json("check.json")["luminaires"], [panel, point])
+
     def test_other_reports(self):
         page = OUTPUTS / "report-json.md"
         self.tool("plan", "meshes/cornell_box.obj", "--json", "plan.json")
@@ -136,10 +150,11 @@ class DocumentedTest(ToolTest):
         found = set(keys(self.json("paths.json")))
         of_errors = {"mesh", "form_factor", "solver", "total", "display", "inside"}
         self.assert_same(found - of_errors, parts(documented(section(page, "## crosscheck"))), {"inside", "outside"})
+        self.tool("check", "lamps.toml", "--json", "lamps.json")
         self.tool("check", "meshes/cornell_box.obj", "--sides", "auto", "--sky", "clear:9000lx", "--sun", "40,180:80000lx", "--json", "check.json", "--problems",
                   "problems.vtp")
         page = REFERENCE / "check-problems.md"
-        self.assert_same(set(keys(self.json("check.json"))), parts(documented(section(page, "## JSON"))), {"file", "line", *OF_DIAGNOSTICS})
+        self.assert_same(set(keys([self.json("check.json"), self.json("lamps.json")])), parts(documented(section(page, "## JSON"))), {"file", "line", *OF_DIAGNOSTICS})
         found = arrays(self.folder / "problems.vtp")
         self.assert_same(found["CellData"] | found["FieldData"], documented(section(page, "## ParaView"), {0}))
 

@@ -19,6 +19,7 @@ struct SceneFacts {
   std::string sha256;  ///< of all its files
   std::size_t polygons = 0;
   std::size_t materials = 0;
+  std::vector<Luminaire> luminaires;  ///< as the scene has them
   double metres_per_unit = 1;
   Vector up = Vector::UnitZ();
   bool up_stated = true;         ///< else it was guessed: upright_axis()

@@ -2,6 +2,8 @@
 
 #include "light/photometry.h"
 #include "output/file/whole_file.h"
+#include "scene/luminaire_kinds.h"
+#include "scene/photometric_web.h"
 
 #include <sys/resource.h>
 
@@ -56,7 +58,7 @@ Json sensors_part(const SensorFacts& sensors) {
 constexpr auto note_on_coarse =
     "min and uniformity of a coarse surface may be too high: its dark patches are larger than the cells of an EN "
     "12464-1 grid, or points of them are darker than their means. Sensors on a grid, which patchlight init writes for "
-    "rooms, give the values of the standard. Smaller patches (mesh.patches) come closer to them.";
+    "rooms, give the values of the standard. Smaller patches come closer to them.";
 
 // The light on floor, walls and ceiling of each room.
 Json rooms_part(const Report& report) {
@@ -97,6 +99,7 @@ Json scene_part(const SceneFacts& scene) {
   part["sha256"] = scene.sha256;
   part["polygons"] = scene.polygons;
   part["materials"] = scene.materials;
+  part["luminaires"] = luminaires_part(scene.luminaires);
   part["metres_per_unit"] = scene.metres_per_unit;
   part["up"] = json_array(scene.up);
   part["warnings"] = json_of(scene.warnings);
@@ -336,6 +339,20 @@ Json decisions_part(const std::vector<Decision>& decisions) {
                     {"forced", decision.forced}});
   }
   return part;
+}
+
+Json luminaires_part(const std::vector<Luminaire>& luminaires) {
+  Json parts = Json::array();
+  for (const Luminaire& luminaire : luminaires) {
+    const auto* const measured = std::get_if<WebLight>(&luminaire.light);
+    parts.push_back({{"name", luminaire.name},
+                     {"kind", kind_of(luminaire)},
+                     {"file", measured != nullptr ? Json(measured->web->file) : Json()},
+                     {"place", luminaire.place},
+                     {"position_m", json_array(luminaire.position)},
+                     {"aim", json_array(Vector(luminaire.aim.array() + 0.0))}});  // without a sign of 0
+  }
+  return parts;
 }
 
 Json report_json(const Report& report, const Provenance& provenance) {

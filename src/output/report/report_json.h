@@ -30,6 +30,9 @@ nlohmann::ordered_json json_array(const Values& values) {
   return array;
 }
 
+/// An array of objects with name, kind, file, place, position_m and aim.
+nlohmann::ordered_json luminaires_part(const std::vector<Luminaire>& luminaires);
+
 /// The relative errors that the last of the steps has reached; null without any. docs/reference/outputs/report-json.md
 /// lists the keys.
 nlohmann::ordered_json relative_errors(const std::vector<AccuracyStep>& steps);

@@ -231,6 +231,7 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
     json["objects"].push_back({{"name", facts.name}, {"faces", facts.faces}, {"area_m2", facts.area}});
   json["materials"] = Json::array();
   for (const MaterialFacts& facts : report.materials) json["materials"].push_back(material_part(facts));
+  json["luminaires"] = luminaires_part(scene.luminaires);
   json["sun"] = sun_part(scene);
   json["sky"] = sky_part(scene);
   json["problems"] = Json::array();
