@@ -1,5 +1,6 @@
 # Installation, and the Debian packages that `cpack` makes: patchlight has the tool, libpatchlight-dev the library,
-# python3-patchlight the module for Python, patchlight-doc the pages of docs/. What is not built is left out.
+# python3-patchlight the module for Python, patchlight-doc the pages of docs/ with the models that they use. What is not
+# built is left out.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -29,8 +30,7 @@ if(PATCHLIGHT_TOOL)
   install(FILES ${patchlight_compressed_manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
   # The pages that `patchlight help TOPIC` prints.
   install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/patchlight/md COMPONENT tool
-          FILES_MATCHING PATTERN *.md PATTERN benchmarks EXCLUDE PATTERN developer EXCLUDE PATTERN figures EXCLUDE
-          PATTERN man EXCLUDE PATTERN notebooks EXCLUDE)
+          FILES_MATCHING PATTERN *.md PATTERN figures EXCLUDE PATTERN man EXCLUDE)
 endif()
 if(PATCHLIGHT_IO)
   # The IFC reader's script with web-ifc, of which Node.js needs three files, for all that reads scenes.
@@ -92,6 +92,9 @@ else()
   install(DIRECTORY docs/ DESTINATION ${patchlight_documents}/markdown COMPONENT doc
           FILES_MATCHING PATTERN *.md PATTERN *.ipynb PATTERN *.bib PATTERN *.png PATTERN *.svg)
 endif()
+# The models and the script for ParaView that the pages name.
+install(DIRECTORY meshes DESTINATION ${patchlight_documents}/examples COMPONENT doc)
+install(FILES scripts/paraview_view.py DESTINATION ${patchlight_documents}/examples/scripts COMPONENT doc)
 
 if(PATCHLIGHT_PYTHON)
   set(patchlight_python_destination lib/python3/dist-packages/patchlight)
@@ -110,17 +113,19 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME patchlight)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_TOOL_DESCRIPTION "The tool: it reads models of rooms and buildings, finds form factors
-between their patches, solves for the light that goes back and forth, by
-day too, and says how far each value may be off. Results are values for
-ParaView, pictures, pages for the browser, lightmaps and maps of sensors.")
+set(CPACK_DEBIAN_TOOL_DESCRIPTION "Lighting simulation for rooms and buildings
+The tool reads a model and computes the light of lamps, luminaires, sun
+and sky on all surfaces by finite-element radiosity. Every value has an
+error bar. Results are tables, images, HTML pages, lightmaps, maps of
+sensors, and files for ParaView.")
 set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "nodejs (>= 18)")  # reads IFC files
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)  # the libraries that the tool is linked with
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpatchlight-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "patchlight")  # has the reader of IFC
-set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "The library in C++ with its headers and what CMake needs to find it:
-scenes, form factors, solvers, error bars and what is seen of a solution.")
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "Lighting simulation - C++ library
+Static library, headers and CMake files: scenes, form factors, solvers,
+error bars, readers, writers and images.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libembree-dev, libopenmesh-dev, libgeos-dev, libtbb-dev, libboost-dev")
 if(PATCHLIGHT_IO)
   string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
@@ -130,15 +135,16 @@ set(CPACK_DEBIAN_DOC_PACKAGE_NAME patchlight-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_RECOMMENDS "libjs-mathjax")  # typesets the formulas of the pages
-set(CPACK_DEBIAN_DOC_DESCRIPTION "The documentation: tutorials, guides, concepts, the reference of commands and
-formats, the theory, and measurements.")
+set(CPACK_DEBIAN_DOC_DESCRIPTION "Lighting simulation - documentation
+Tutorials, guides, concepts, the reference of commands and formats, the
+theory, benchmarks, and the sample models that the pages use.")
 if(PATCHLIGHT_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-patchlight)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The module for Python: scenes to read and to change, solutions as numpy
-arrays, form factors as a scipy operator, the solvers one by one, reports
-and pages for the browser.")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "Lighting simulation - Python module
+Reads, changes and solves scenes. Solutions are NumPy arrays, form factors
+a SciPy operator. Writes reports, images and HTML pages.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, patchlight")  # the latter has the reader of IFC

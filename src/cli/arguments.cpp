@@ -117,7 +117,8 @@ std::vector<std::filesystem::path> folders_of_pages() {
           program.parent_path().parent_path() / "docs"};
 }
 
-// The page with this file name in the first folder that has one; the first by name if there are several.
+// The page with this file name, or the index of the folder with this name, in the first folder that has one. If there
+// are several, the one in the fewest folders.
 std::filesystem::path page_named(const std::string& topic) {
   for (const std::filesystem::path& folder : folders_of_pages()) {
     std::error_code error;
@@ -125,9 +126,14 @@ std::filesystem::path page_named(const std::string& topic) {
     for (std::filesystem::recursive_directory_iterator k(folder, error), end; !error && k != end; k.increment(error)) {
       const std::filesystem::path& file = k->path();
       const bool is_page = file.extension() == ".md" || file.extension() == ".html";
-      if (is_page && file.stem() == topic) found.push_back(file);
+      const bool is_index = file.stem() == "index" && file.parent_path().filename() == topic;
+      if (is_page && (is_index || file.stem() == topic)) found.push_back(file);
     }
-    if (!found.empty()) return *std::min_element(found.begin(), found.end());
+    const auto depth = [](const std::filesystem::path& page) { return std::distance(page.begin(), page.end()); };
+    const auto is_before = [&](const auto& one, const auto& other) {
+      return std::pair(depth(one), one) < std::pair(depth(other), other);
+    };
+    if (!found.empty()) return *std::min_element(found.begin(), found.end(), is_before);
   }
   return {};
 }
@@ -298,7 +304,7 @@ std::string topic_help(const CLI::App& tool, const std::string& topic) {
     if (command->get_name() == topic) return full_help(*command);
   const std::filesystem::path page = page_named(topic);
   if (page.empty())
-    throw InputError("help", "no page '" + topic + "' is installed\nhint: patchlight --help lists the commands");
+    throw InputError("help", "no page '" + topic + "' is installed\nhint: patchlight help index lists the pages");
   if (page.extension() == ".html") return page.string() + '\n';
   std::ostringstream text;
   text << std::ifstream(page, std::ios::binary).rdbuf();

@@ -15,6 +15,7 @@ OPTIONS = """--output --series --json --picture --false-color --camera --view --
 --sides --set --max-edge --patches --accuracy --time-limit --focus --error-bars --method --solver --tolerance
 --max-iterations --samples --seed --threads --memory --discard --quiet --verbose --help""".split()
 
+DOCS = pathlib.Path(__file__).resolve().parent.parent.parent / "docs"
 NOT_CONVERGED = 3
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -73,6 +74,8 @@ class SolveTest(ToolTest):
     def test_help_on_a_topic(self):
         self.assertEqual(self.run_tool("help", "solve").stdout, self.run_tool("solve", "--help").stdout)
         self.assertEqual(self.run_tool("help").stdout, self.run_tool("--help").stdout)
+        for topic, page in (("daylight", "concepts/daylight.md"), ("index", "index.md"), ("formats", "reference/formats/index.md")):
+            self.assertEqual(self.run_tool("help", topic).stdout, (DOCS / page).read_text(encoding="utf-8"))
         done = self.run_tool("help", "no-such-topic")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("no-such-topic", done.stderr)
@@ -80,7 +83,7 @@ class SolveTest(ToolTest):
     def test_former_names_still_work(self):
         done = self.solve("--patches", 100, "-o", "a.vtp", "--storage", "tiles", "--force", "occlusion", "--report", "a.json")
         self.assertEqual(done.stderr.count(" is now --"), 3, done.stderr)
-        self.assertIn("note: --force is now --enable", done.stderr)
+        self.assertRegex(done.stderr, r"note: --force .*--enable\b")
         self.assertEqual(json.loads((self.folder / "a.json").read_text())["request"]["force"], ["occlusion"])
         self.assertEqual(self.solve("--patches", 100, "-q", "-o", "a.vtp", "--keep-mesh").stderr, "")
 
@@ -141,14 +144,17 @@ class SolveTest(ToolTest):
             report = json.loads(self.read("a.json"))
             imbalance = report["energy_balance"]["imbalance"]
             usual = (64 * report["mesh"]["patches"]) ** -0.5
-            found = re.search(r"imbalance (\S+) of the flux(, due to the noise of the rays: up to a few times (\S+) is usual)?",
-                              done.stdout)
-            self.assertAlmostEqual(float(found[1]) / imbalance, 1, delta=0.1)
-            self.assertEqual((found[2] is not None, imbalance > usual / 10), (is_said, is_said), done.stdout)
+            shown = self.imbalance_shown(done)
+            self.assertAlmostEqual(shown[0] / imbalance, 1, delta=0.1)
+            self.assertEqual((len(shown), imbalance > usual / 10), (1 + is_said, is_said), done.stdout)
             if is_said:
-                self.assertAlmostEqual(float(found[3]) / usual, 1, delta=0.5)
+                self.assertAlmostEqual(shown[1] / usual, 1, delta=0.5)
         pairs = self.run_tool("solve", box, "--method", "pairs", "--patches", 900, "--json", "b.json")
-        self.assertRegex(pairs.stdout, r"imbalance \S+ of the flux\n")
+        self.assertEqual(len(self.imbalance_shown(pairs)), 1)
+
+    def imbalance_shown(self, done):
+        """The imbalance in the summary, and the usual one by the noise of the rays where the summary has it."""
+        return [float(number) for number in re.findall(r"\d[\d.]*(?:e-?\d+)?", re.search(r"imbalance.*", done.stdout)[0])]
 
     def test_same_bytes_for_any_number_of_threads(self):
         for threads in (1, 2):
@@ -186,7 +192,8 @@ class SolveTest(ToolTest):
         """After two bounces about 15 % of the flux is unshot, and the noise of all rays is 1 / sqrt(R) = 0.4 %."""
         done = self.solve("--patches", 900, "--method", "rays", "--solver", "jacobi", "--max-iterations", 2,
                           "--json", "a.json", code=NOT_CONVERGED)
-        self.assertRegex(done.stdout, r"imbalance \S+ of the flux, more than the noise of the rays explains: up to a few")
+        found, usual = self.imbalance_shown(done)
+        self.assertGreater(found, 10 * usual)
 
     def test_interrupt_leaves_no_file(self):
         for sent in SIGNALS:

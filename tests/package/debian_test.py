@@ -37,6 +37,24 @@ def faults(debs):
     return [line for line in found.splitlines() if line[:2] in ("E:", "W:") and "bogus-mail-host" not in line]
 
 
+def check_pages(usr):
+    """The tool's package has every page that the tool names, with the pages that it links; that of pages has the models."""
+    pages = usr / "share" / "doc" / "patchlight" / "md"
+    sources = "".join(file.read_text(encoding="utf-8") for file in sorted((ROOT / "src").rglob("*.cpp")))
+    topics = set(re.findall(r"patchlight help ([a-z][a-z-]+)", sources))
+    assert {"scene-file", "exit-status"} <= topics, topics
+    for topic in topics:
+        assert output(usr / "bin" / "patchlight", "help", topic), topic
+    for page in pages.rglob("*.md"):
+        for target in re.findall(r"\]\(([\w./-]+\.md)(?:#[\w-]+)?\)", page.read_text(encoding="utf-8")):
+            there = (page.parent / target).resolve()
+            assert there.is_file() or pages not in there.parents, f"{page} links to {target}"
+    documents = usr / "share" / "doc" / "patchlight-doc"
+    assert (documents / "html" / "index.html").is_file() or (documents / "markdown" / "index.md").is_file()
+    assert {path.name for path in (documents / "examples" / "meshes").iterdir()} >= {"study.obj", "flat.ifc", "panel.ies"}
+    assert (documents / "examples" / "scripts" / "paraview_view.py").is_file()
+
+
 def main(build, version, cmake, _compiler):
     cpack = pathlib.Path(cmake).with_name("cpack")
     with tempfile.TemporaryDirectory(prefix="patchlight-debian-") as name:
@@ -74,8 +92,7 @@ def main(build, version, cmake, _compiler):
                folder / "cube.glb")
         for file in ("share/man/man1/patchlight.1.gz", "share/man/man1/patchlight-solve.1.gz", "share/doc/patchlight/changelog.gz", "share/doc/patchlight/copyright", "include/patchlight/simulate.h"):
             assert (usr / file).is_file(), file
-        pages = usr / "share" / "doc" / "patchlight-doc"
-        assert (pages / "html" / "index.html").is_file() or (pages / "markdown" / "index.md").is_file()
+        check_pages(usr)
 
 
 main(*sys.argv[1:])
