@@ -294,9 +294,10 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
 ExitCode check(const CheckArguments& arguments) {
   for (const OutputFile& output : outputs_of(arguments))
     if (!output.file.empty()) check_writable(output.file);
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = with_option_names(read_scene(arguments.models, arguments.read));
   require_not_read(outputs_of(arguments), scene.inputs);
   SceneReport report = survey(scene);
+  report.diagnostics = with_option_names(std::move(report.diagnostics));
   if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
 
   const WritingGuard guard;
@@ -320,7 +321,7 @@ ExitCode check(const CheckArguments& arguments) {
 ExitCode plan(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
-  const Scene scene = read_scene(arguments.models, arguments.read);
+  const Scene scene = with_option_names(read_scene(arguments.models, arguments.read));
   print_scene_warnings(scene);
   require_not_read({{"--json", arguments.json}}, scene.inputs);
   check(arguments.request, scene);
@@ -328,7 +329,7 @@ ExitCode plan(const PlanArguments& arguments) {
   require_memory(scene, arguments.request, planned);
   const NestedMesh mesh = first_mesh(scene, planned);
   require_memory(mesh.patches.size(), arguments.request, planned);
-  const Plan plan = with_note_on_second_mesh(planned, mesh.patches.size());
+  const Plan plan = with_option_names(with_note_on_second_mesh(planned, mesh.patches.size()));
   const ExpectedCost cost = expected_cost(scene, plan, mesh.patches);
 
   const WritingGuard guard;

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"
+#include "cli/option_names.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
@@ -259,7 +260,7 @@ ExitCode crosscheck(const CrosscheckArguments& arguments) {
   with.look = [&line](const Simulation& solved) {
     line.next_mesh(solved.accuracy.back().total, solved.plan.accuracy.relative_error);
   };
-  const Simulation simulation = simulate(scene, arguments.request, observer, with);
+  const Simulation simulation = with_option_names(simulate(scene, arguments.request, observer, with));
   const Report report = report_of(scene, arguments.request, simulation);
   if (!simulation.solution.converged) {
     line.hide();

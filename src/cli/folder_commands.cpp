@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/distinct_files.h"
 #include "cli/messages.h"
+#include "cli/option_names.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "output/file/whole_file.h"
@@ -262,7 +263,8 @@ ExitCode compare_solvers(const ComparisonArguments& arguments) {
   const Scene scene = read_models(arguments.models, arguments.read, observer);
   require_not_read_from({"-o", arguments.output}, scene.inputs);
   require_not_read({{"--html", arguments.page}}, scene.inputs);
-  const Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
+  Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
+  comparison.simulation = with_option_names(std::move(comparison.simulation));
   const Simulation& simulation = comparison.simulation;
   line.hide();
   if (!simulation.solution.trapped.empty()) {

@@ -106,6 +106,32 @@ std::string with_option_names(const std::string& text, std::span<const OptionNam
   return result;
 }
 
+Diagnostics with_option_names(Diagnostics diagnostics) {
+  for (Diagnostic& found : diagnostics) found.text = with_option_names(found.text);
+  return diagnostics;
+}
+
+Scene with_option_names(Scene scene) {
+  scene.diagnostics = with_option_names(std::move(scene.diagnostics));
+  return scene;
+}
+
+Plan with_option_names(Plan plan) {
+  plan.notes = with_option_names(std::move(plan.notes));
+  plan.sides.notes = with_option_names(std::move(plan.sides.notes));
+  for (Decision& decision : plan.decisions) {
+    decision.reason = with_option_names(decision.reason);
+    decision.saving = with_option_names(decision.saving);
+  }
+  return plan;
+}
+
+Simulation with_option_names(Simulation simulation) {
+  simulation.plan = with_option_names(std::move(simulation.plan));
+  simulation.notes = with_option_names(std::move(simulation.notes));
+  return simulation;
+}
+
 void check_with_names(const Request& request, std::span<const OptionName> other) {
   try {
     check(request);

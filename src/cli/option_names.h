@@ -1,6 +1,8 @@
 #pragma once
 
 #include "patchlight/plan/plan.h"
+#include "patchlight/scene/scene.h"
+#include "patchlight/simulate.h"
 
 #include <span>
 #include <string>
@@ -17,6 +19,12 @@ struct OptionName {
 /// Replaces library fields in a message by options: "effects.skip=sun" becomes "--disable sun". `other` has precedence
 /// over the usual names.
 std::string with_option_names(const std::string& text, std::span<const OptionName> other = {});
+
+/// The same in all texts of these, so that reports and pages name options as messages do.
+Diagnostics with_option_names(Diagnostics diagnostics);
+Scene with_option_names(Scene scene);
+Plan with_option_names(Plan plan);
+Simulation with_option_names(Simulation simulation);
 
 /// check() for a command with other option names. \throws UsageError.
 void check_with_names(const Request& request, std::span<const OptionName> other);

@@ -155,7 +155,10 @@ void add_up_option(CLI::App& command, std::optional<Vector>& up) {
   add_choice<Vector>(command, "--up", up, {{"y", Vector::UnitY()}, {"z", Vector::UnitZ()}});
 }
 
-void add_daylight_options(CLI::App& command, DaylightSetting& daylight) {
+// Materials and daylight, which a model and stored form factors take alike.
+void add_setting_options(CLI::App& command, ModelOptions& options) {
+  DaylightSetting& daylight = options.read.daylight;
+  add_list(command, "--set", options.settings);
   add(command, "--sky", [&daylight](const std::string& text) { take_sky(daylight, text); });
   add(command, "--sun", [&daylight](const std::string& text) { take_sun(daylight, text); });
   add(command, "--ground", daylight.ground_reflectance, from_0_to_1);
@@ -187,15 +190,13 @@ void add_file_options(CLI::App& command, ModelOptions& options) {
 
 void add_model_options(CLI::App& command, ModelOptions& options) {
   add_file_options(command, options);
-  add_list(command, "--set", options.settings);
   add_choice_options(command, options);
-  add_daylight_options(command, options.read.daylight);
+  add_setting_options(command, options);
 }
 
 void add_light_options(CLI::App& command, ModelOptions& options) {
-  add_list(command, "--set", options.settings);
   add_up_option(command, options.read.up);
-  add_daylight_options(command, options.read.daylight);
+  add_setting_options(command, options);
 }
 
 void take_model(const ModelOptions& options, ModelArguments& arguments) {

@@ -2,6 +2,8 @@
 
 #include "patchlight/base/error.h"
 
+#include "cli/option_names.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -178,7 +180,7 @@ Observer observer_on(ProgressLine& line) {
 
 Scene read_models(std::span<const std::filesystem::path> models, const ReadOptions& options, const Observer& observer) {
   if (!observer({.stage = Stage::read})) throw Canceled();
-  Scene scene = read_scene(models, options);
+  Scene scene = with_option_names(read_scene(models, options));
   print_scene_warnings(scene);
   return scene;
 }

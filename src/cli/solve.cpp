@@ -222,7 +222,7 @@ Results solved(const SolveArguments& arguments, Checkpoint& checkpoint, Progress
   with.look = tell_of_meshes(arguments, line);
   with.row_blocks = checkpoint.blocks({*results.scene, input.request.effects});
   expect_stages(arguments, input.request, *results.scene, line);
-  simulation = simulate(results.scene, input.request, observed, with);
+  simulation = with_option_names(simulate(results.scene, input.request, observed, with));
   if (!may_write_what_is_there()) throw Canceled();
   results.iterates = iterates.of_solution(simulation);
   simulation.costs.insert(simulation.costs.begin(), reading.costs().begin(), reading.costs().end());

@@ -4,6 +4,7 @@
 
 #include "archive/form_factor_files.h"
 #include "archive/scene_file.h"
+#include "cli/option_names.h"
 #include "input/tables/read_tables.h"
 #include "input/text.h"
 #include "optics/surface_optics.h"
@@ -107,16 +108,16 @@ Request request_as_then(const SolveArguments& arguments, const FormFactorInfo& i
 
 SolveInput read_input(const SolveArguments& arguments) {
   const std::filesystem::path& folder = arguments.form_factors;
-  if (folder.empty()) return {read_scene(arguments.models, arguments.read), arguments.request};
+  if (folder.empty()) return {with_option_names(read_scene(arguments.models, arguments.read)), arguments.request};
 
   SolveInput input;
   std::optional<KeptSides> sides;
   const bool from_folder = arguments.models.empty();
-  if (!from_folder) input.scene = read_scene(arguments.models, arguments.read);
+  if (!from_folder) input.scene = with_option_names(read_scene(arguments.models, arguments.read));
   const FormFactorInfo info = read_form_factor_info(folder);
   if (from_folder) {
     StoredScene stored = read_stored_scene(folder);
-    input.scene = with_options(std::move(stored.scene), arguments.read);
+    input.scene = with_option_names(with_options(std::move(stored.scene), arguments.read));
     sides = std::move(stored.sides);
   }
   require_same_unit(folder, info, input.scene);

@@ -268,20 +268,25 @@ double opacity_of(const Material& material, const Spectrum& shares) {
   return 1 - std::pow(std::clamp((shares * material.transmittance).sum(), 0.0, 1.0), 1 / 2.2);
 }
 
-// The names of materials with their opacity, and which have a picture.
+// The names of materials with their opacity, and which have a picture or are mirrors.
 void add_materials(Json& part, const SolvedSurface& surface) {
   const Spectrum shares = luminous_shares(bands_of(surface.scene));
   const PatchMesh& mesh = surface.simulation.mesh;
-  for (const char* name : {"materials", "opacity", "textured"}) part[name] = Json::array();
+  for (const char* name : {"materials", "opacity", "textured", "mirrors"}) part[name] = Json::array();
   for (const Material& material : surface.scene.materials) {
     part["materials"].push_back(material.name);
     part["opacity"].push_back(opacity_of(material, shares));
   }
-  std::vector<std::uint8_t> has_picture(surface.scene.materials.size(), 0);
-  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) has_picture[mesh.material[patch]] = 1;
-  for (std::size_t k = 0; k < has_picture.size(); ++k) {
+  std::vector<std::uint8_t> is_used(surface.scene.materials.size(), 0);
+  for (PatchIndex patch = 0; patch < mesh.size(); ++patch) is_used[mesh.material[patch]] = 1;
+  for (std::size_t k = 0; k < is_used.size(); ++k) {
+    if (is_used[k] == 0) continue;
     const Material& material = surface.scene.materials[k];
-    if (has_picture[k] != 0 && material.texture) part["textured"].push_back(material.name);
+    if (material.texture) part["textured"].push_back(material.name);
+    // The look of a mirror depends on the place of the eye. A page without rays has one color for it.
+    const bool is_mirror = material.specular_reflectance.size() > 0 &&
+                           material.specular_reflectance.maxCoeff() > material.reflectance.maxCoeff();
+    if (is_mirror) part["mirrors"].push_back(k);
   }
 }
 

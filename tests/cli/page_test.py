@@ -5,6 +5,7 @@ import re
 import unittest
 import zlib
 
+from room import MATERIALS
 from support import ToolTest
 
 
@@ -41,6 +42,28 @@ class PageTest(ToolTest):
             self.assertEqual(room["rooms"][0]["floor"]["coarse"], is_coarse)
             if is_coarse:
                 self.assertIn("Sensors on a grid", room["note"])
+
+    def test_notes_of_pages_and_reports_name_options(self):
+        """Fields of the library, e.g. read.settings or assembly.storage, have no meaning for users of the tool."""
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 10 9 8\nd 0.2"))
+        fields = r"\b(?:read|mesh|assembly|solver|accuracy|resources|effects)\.[a-z]"
+        data = self.made("solve", "room.obj", "--patches", 200, "--json", "room.json")
+        self.assertIn("--set lamp.transmittance=0", json.dumps(data["diagnostics"]))
+        self.assertIn("--method ", json.dumps(data["report"]["plan"]["notes"]))
+        for text in (json.dumps(data["diagnostics"]), json.dumps(data["report"]), (self.folder / "room.json").read_text()):
+            self.assertNotRegex(text, fields)
+        for command in ("check", "plan"):
+            self.assertEqual(self.run_tool(command, "room.obj", "--json", f"{command}.json").returncode, 0)
+            self.assertNotRegex((self.folder / f"{command}.json").read_text(), fields)
+
+    def test_luminaires_and_mirrors_are_named(self):
+        self.write("room.mtl", MATERIALS.replace("Ke 10 9 8", "Ke 10 9 8\nKs 0.9 0.8 0.7\nillum 3"))
+        self.write("lit.toml", '[[model]]\nfile = "room.obj"\n[[luminaire]]\nname = "spot"\nkind = "spot"\nposition = [0, 0, 1.5]\n'
+                               'lumens = 100\nbeam_angle = 20\nfield_angle = 40\n')
+        data = self.made("solve", "lit.toml", "--patches", 100)
+        self.assertEqual([data["model"]["materials"][k] for k in data["model"]["mirrors"]], ["lamp"])
+        spot, = data["report"]["input"]["luminaires"]
+        self.assertEqual((spot["name"], spot["kind"], spot["position_m"], spot["aim"]), ("spot", "spot", [0, 0, 1.5], [0, 0, -1]))
 
     def test_page_alone_is_enough_to_write(self):
         self.assertEqual(self.made("solve", "room.obj", "--patches", 100, "--accuracy", "20%")["report"]["accuracy"][0]["samples"] > 0, True)

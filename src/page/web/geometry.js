@@ -73,15 +73,31 @@ function outlines(faces, mesh, chosen) {
   return new Float32Array(ends);
 }
 
-// Surfaces without light are gray; they show only where the model is cut.
-const unlit = [150, 150, 146];
+// Marks of luminaires: an octahedron of this size around each place, and a line along its aim.
+function luminaireMarks(luminaires, inside, size) {
+  const ends = [];
+  for (const {position_m: place, aim, kind} of luminaires) {
+    const middle = inside(place);
+    const corners = [0, 1, 2].flatMap((axis) => [-1, 1].map((sign) => middle.clone().setComponent(axis, middle.getComponent(axis) + sign * size)));
+    corners.forEach((corner, k) => {
+      for (const other of corners.slice(k + 1)) {
+        if (corners.indexOf(other) !== (k ^ 1)) ends.push(...corner.toArray(), ...other.toArray());
+      }
+    });
+    if (kind === "ies" || kind === "spot") ends.push(...middle.toArray(), ...middle.clone().addScaledVector(new THREE.Vector3(...aim), 4 * size).toArray());
+  }
+  return new Float32Array(ends);
+}
+
+// Surfaces without light are gray; they show only where the model is cut. Mirrors have one color, as the page has no rays.
+const unlit = [150, 150, 146], mirrored = [172, 186, 198];
 
 // Colors of the corners of all triangles, a byte per channel.
-function naturalColours(faces, mesh, ofVertices, dark) {
+function naturalColours(faces, mesh, ofVertices, dark, isMirror) {
   const colours = new Uint8Array(3 * mesh.vertices.length);
   mesh.vertices.forEach((vertex, k) => {
-    const isDark = dark[faces.row[mesh.faceOf[Math.floor(k / 3)]]] === 1;
-    colours.set(isDark ? unlit : ofVertices.subarray(3 * vertex, 3 * vertex + 3), 3 * k);
+    const row = faces.row[mesh.faceOf[Math.floor(k / 3)]];
+    colours.set(dark[row] === 1 ? unlit : isMirror(row) ? mirrored : ofVertices.subarray(3 * vertex, 3 * vertex + 3), 3 * k);
   });
   return colours;
 }

@@ -110,7 +110,7 @@ function listenToColours(model, view) {
     const name = byId("quantity").value;
     const look = model.looks[looks.findIndex(([value]) => value === name)];
     byId("legend").hidden = look !== undefined;
-    if (look) return view.colour(naturalColours(model.faces, view.mesh, look.colours, model.rows.dark), true, look.sky);
+    if (look) return view.colour(naturalColours(model.faces, view.mesh, look.colours, model.rows.dark, (row) => model.mirrors.includes(model.rows.material_id[row])), true, look.sky);
     view.colour(falseColours(model.faces, view.mesh, model.values[name], scale, model.rows.dark), false);
     byId("ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", {}, shown(valueAt(share, scale), 3))));
     byId("extremes").textContent = extremes(model, order, scale, units[name]);
@@ -166,14 +166,27 @@ function listenToView(model, view) {
     const box = view.canvas.getBoundingClientRect();
     choose(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height);
   });
-  // Views from outside are exposed for the outside, where the model has both.
+  // A view from above is that of a plan: ceilings and roofs are cut away, unless there is a section already.
+  const upright = model.up.findIndex((part) => Math.abs(part) > 0.7);
+  let isPlan = false;
+  const section = (axis) => {
+    byId("cut-axis").value = axis;
+    byId("cut-at").value = model.up[upright] < 0 ? 250 : 750;
+    byId("cut-other").checked = model.up[upright] < 0;
+    byId("cut-axis").dispatchEvent(new Event("input"));
+    isPlan = axis !== "";
+  };
+  byId("cut-axis").addEventListener("input", () => { isPlan = false; });
+  // The whole model from outside is exposed for the outside, where the model has both.
   const outdoors = model.looks.findIndex(({name}) => name.endsWith("outside"));
   for (const name of ["home", "above", "outside"]) {
     byId(name).addEventListener("click", () => {
+      if (name === "above" && upright >= 0 && byId("cut-axis").value === "") section(String(upright));
+      else if (name !== "above" && isPlan) section("");
       view.look(...from[name]);
       const quantity = byId("quantity");
       if (outdoors < 0 || quantity.selectedIndex >= model.looks.length) return;
-      quantity.selectedIndex = name === "home" ? 0 : outdoors;
+      quantity.selectedIndex = name === "outside" ? outdoors : 0;
       quantity.dispatchEvent(new Event("change"));
     });
   }
@@ -181,6 +194,8 @@ function listenToView(model, view) {
     if (edges) edges.remove();
     edges = byId("edges").checked ? view.lines(outlines(model.faces, view.mesh, model.faces.row.keys()), 0x555555) : null;
   });
+  const luminaires = data.report ? data.report.input.luminaires : [];
+  if (luminaires.length > 0) view.lines(luminaireMarks(luminaires, view.inside, view.size / 100), 0xff9000);
   listenToKeys(view, {home: () => view.look(...from.home), choose: () => choose(0, 0)});
   view.look(...from.home);
 }
@@ -206,6 +221,8 @@ function showOutlines(view) {
 function explainDrawing(model) {
   if (!model.photometric) byId("fewer").textContent = "The lights of this scene are given in watts. Photometric values assume 179 lm/W. ";
   if (model.textured.length > 0) byId("fewer").textContent += `Textured surfaces (${model.textured.join(", ")}) show the mean color of each patch. `;
+  if (model.mirrors.length > 0) byId("fewer").textContent += `Mirrors (${model.mirrors.map((k) => model.materials[k]).join(", ")}) have one color, without reflections. `;
+  if (data.report && data.report.input.luminaires.length > 0) byId("fewer").textContent += "Orange lines mark luminaires. ";
   const left = model.patches_left_out;
   if (model.faces.row.length + model.patches_covered === model.patches) return;
   byId("fewer").textContent += `The model has ${model.patches.toLocaleString("en")} patches. The page draws ${model.faces.row.length.toLocaleString("en")} faces: where patches differ least, one face with their mean replaces them.`
