@@ -186,9 +186,8 @@ std::string sides_left_out(const Scene& scene, const Verification& verification)
 // Lamps close to large patches spread light too far; the checked patches may not show it.
 std::string close_lamps(const Scene& scene, const Simulation& simulation, Verdict verdict) {
   if (notes_on_close_lamps(scene, simulation.world->between_patches(), simulation.plan.max_edge).empty()) return {};
-  const std::string near = "the lamps that are nearer to a surface than its patches are large";
-  return verdict == Verdict::agrees ? ", on the patches that were checked: see the note on " + near
-                                    : "; " + near + " may be why: see the note on them";
+  const std::string note = "see the note close_lamp";
+  return verdict == Verdict::agrees ? ", on the patches that were checked: " + note : "; a possible cause: " + note;
 }
 
 std::string verdict(const Verification& verification, const std::string& granted, const std::string& doubt) {

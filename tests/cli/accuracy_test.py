@@ -108,9 +108,10 @@ class AccuracyTest(ToolTest):
         self.write("office.mtl", OFFICE_MATERIALS)
         done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json")
         self.assertEqual(done.returncode, GOOD, done.stderr)
-        self.assertRegex(done.stdout, r"(?m)^estimated error \(indoors\): \S+ %")
-        self.assertRegex(done.stdout, r"\n  outside, \d+ patches, relative to the light reflected there: \S+ %")
         spaces = json.loads((self.folder / "report.json").read_text())["relative_error_by_space"]
+        for space in spaces.values():
+            self.assertIn(f"{100 * space['total']:.2g} %", done.stdout)
+        self.assertIn(f" {spaces['outside']['patches']} ", done.stdout)
         done = self.run_tool("solve", "office.toml", "--patches", 300, "--error-bars", "--json", "report.json",
                              "--focus", "room.inside")
         self.assertEqual(done.returncode, GOOD, done.stderr)
@@ -134,7 +135,7 @@ class AccuracyTest(ToolTest):
                 self.assertIn(f"{option}: found '{value}'", done.stderr)
                 self.assertIn(expected, done.stderr)
         for value, meant in (("1", "1%"), ("2.5", "2.5%")):
-            self.assertIn(f"did you mean {meant}?", self.solve("-o", "a.vtp", "--accuracy", value, code=USAGE).stderr)
+            self.assertIn(f" {meant}?", self.solve("-o", "a.vtp", "--accuracy", value, code=USAGE).stderr)
         self.assertNotIn("mean", self.solve("-o", "a.vtp", "--accuracy", "200", code=USAGE).stderr)
         self.assertEqual(self.names(), set())
 
@@ -172,14 +173,17 @@ class AccuracyTest(ToolTest):
         report, done = self.report("--method", "rays", "--rays", "16", "--accuracy", "2%", "--patches", "300", "-v")
         rays = report["accuracy"][-1]["samples"]
         self.assertGreater(rays, 16)
-        self.assertRegex(done.stdout, rf"\nform factors: .*\b{rays} rays\b")
+        self.assertIn(f" {rays} rays", done.stdout)
 
     def test_without_bars_it_is_said_what_is_not_known(self):
-        for words, how in ((("--no-error-bars",), "\nhint: --error-bars"), (("--no-closure",), " with --no-closure")):
-            done = self.solve("-o", "a.ply", "--patches", "100", *words)
-            self.assertIn(f"errors of mesh and form factors: not known{how}", done.stdout)
+        for words, how in ((("--no-error-bars",), "hint: --error-bars"), (("--no-closure",), "--no-closure")):
+            report, done = self.report("--patches", "100", *words)
+            self.assertIsNone(report["relative_error"])
+            self.assertIn(how, done.stdout)
         for words in ((), ("--error-bars",)):
-            self.assertNotIn("not known", self.solve("-o", "a.ply", "--patches", "100", *words).stdout)
+            report, done = self.report("--patches", "100", *words)
+            self.assertGreater(report["relative_error"]["total"], 0)
+            self.assertNotIn("hint: --error-bars", done.stdout)
 
     def test_options_that_leave_no_error_bars_are_refused(self):
         for asked in (("--accuracy", "1%"), ("--time-limit", "1s"), ("--error-bars",)):
@@ -196,7 +200,7 @@ class AccuracyTest(ToolTest):
     def test_an_unknown_interest_names_the_known_ones(self):
         done = self.solve("-o", "a.vtp", "--accuracy", "5%", "--focus", "white", "--focus", "whyte", code=INPUT)
         self.assertIn("'whyte'", done.stderr)
-        self.assertRegex(done.stderr, r"did you mean 'white'")
+        self.assertIn(" 'white'?", done.stderr)
         self.assertEqual(self.names(), set())
 
     def test_error_bars_are_stated_everywhere(self):
@@ -210,8 +214,10 @@ class AccuracyTest(ToolTest):
         self.assertGreaterEqual(errors["total"], max(parts) * (1 - 1e-12))
         self.assertEqual(len(report["accuracy"]), 1)
         self.assertEqual(report["accuracy"][0]["patches"], report["mesh"]["patches"])
-        self.assertRegex(done.stdout, r"estimated error: \S+ % \(mesh \S+, form factors \S+, solver \S+\); "
-                                      r"variation within patches: \S+ %\n")
+        line = next(line for line in done.stdout.splitlines() if line.startswith("estimated error"))
+        shown = [float(number) for number in re.findall(r"\d[\d.]*(?:e-\d+)?", line)]
+        for number, bar in zip(shown, ("total", "mesh", "form_factor", "solver", "display"), strict=True):
+            self.assertAlmostEqual(number, 100 * errors[bar], delta=6 * errors[bar], msg=bar)
         self.assertIn("error_bars", [cost["stage"].replace(" ", "_") for cost in report["costs"]])
         written = (self.folder / "a.vtp").read_bytes()
         for array in ARRAYS + ("error_solver",):
@@ -267,11 +273,10 @@ class AccuracyTest(ToolTest):
     def test_interest_saves_patches(self):
         self.write("room.obj", ROOM.replace("f 13 14 15 16", "o plate\nf 13 14 15 16"))
         everything, _ = self.report("--accuracy", "0.5%")
-        plate, done = self.report("--accuracy", "0.5%", "--focus", "plate")
+        plate, _ = self.report("--accuracy", "0.5%", "--focus", "plate")
         self.assertEqual(plate["request"]["interest"], ["plate"])
         self.assertLessEqual(plate["relative_error"]["total"], 0.005)
         self.assertLess(plate["mesh"]["patches"], everything["mesh"]["patches"])
-        self.assertIn("estimated error on plate: ", done.stdout)
 
     def test_time_ends_with_a_result(self):
         begin = time.monotonic()

@@ -90,7 +90,7 @@ class BuildingTest(ToolTest):
                 ("--weather", "city.epw@13-1-5", ["MONTH-DAY-HOUR"])):
             self.refused(USAGE, [option, *parts], "solve", "court.obj", option, value, "-o", "x.vtp")
         self.refused(INPUT, ["--sky", "hint: --sun "], "plan", "court.obj", "--sky", "clear")
-        self.refused(INPUT, ["--exclude", "did you mean 'floor'"], "plan", "court.obj", "--sky", "overcast",
+        self.refused(INPUT, ["--exclude", " 'floor'?"], "plan", "court.obj", "--sky", "overcast",
                      "--exclude", "flor")
 
     def test_a_guessed_upright_axis_is_warned_of_where_light_depends_on_it(self):
@@ -156,11 +156,11 @@ class BuildingTest(ToolTest):
         text = (self.folder / "hall.toml").read_text()
         self.write("fine.toml", text.replace("# spacing = 0.5 ", "spacing = 0.005 "))
         said = self.good("check", "fine.toml")
-        self.assertRegex(said, r"\d{6} sensors are requested.* the largest group, 'work plane' \(\S*fine\.toml:\d+\), has \d+ of them over")
-        self.assertNotIn("sensors are requested", self.good("check", "hall.toml"))
+        self.assertRegex(said, r"implausible_size: \d{6} .*'work plane' \(\S*fine\.toml:\d+\)")
+        self.assertNotIn("implausible_size", self.good("check", "hall.toml"))
         # The run stops early: without mesh and patches, the memory limit refuses it later.
         done = self.run_tool("solve", "fine.toml", "--patches", 50, "--memory", "1kB", "-o", "fine.vtp")
-        self.assertRegex(done.stderr, r"note: implausible_size: \d{6} sensors are requested")
+        self.assertRegex(done.stderr, r"note: implausible_size: \d{6} ")
 
     def test_check_fits_on_a_screen(self):
         names = [f"m{k}" for k in range(80)]
@@ -170,7 +170,7 @@ class BuildingTest(ToolTest):
         self.write("many.obj", "mtllib many.mtl\n" + faces)
         short = self.good("check", "many.obj", "--sky", "overcast")
         self.assertLessEqual(len(short.splitlines()), 50)
-        self.assertIn("and 68 more (--all lists them)", short)
+        self.assertRegex(short, r"\b68\b.*--all\b")
         every = self.good("check", "many.obj", "--sky", "overcast", "--all")
         for name in names:
             self.assertIn(f"  {name} ", every)

@@ -144,8 +144,7 @@ class FormFactorsTest(ToolTest):
                                  "--sides", sides)
             self.assertEqual(done.returncode, GOOD, done.stderr)
             self.assertIn(f"source    0.00000  {expected}", done.stdout)
-            self.assertEqual("fraction of the light from all of its sides" in done.stdout + done.stderr,
-                             sides == "both")
+            self.assertEqual("note: both_sides: " in done.stderr, sides == "both")
 
     def test_every_estimator_finds_about_the_same(self):
         def mean_of(estimator):
@@ -212,7 +211,6 @@ class FormFactorsTest(ToolTest):
         for words in (["--form-factors", "raw.ff"], ["--max-edge", "0.5"]):
             done = self.run_tool("solve", "room.obj", "--json", "a.json", "-v", "--no-closure", *words)
             self.assertEqual(done.returncode, GOOD, done.stderr)
-            self.assertIn("closure: none: not wanted", done.stdout)
             report = json.loads((self.folder / "a.json").read_text())
             self.assertEqual(report["transport"]["closure"], "none: not wanted")
             for key in ("min", "mean", "max", "rms_defect"):

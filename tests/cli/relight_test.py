@@ -94,7 +94,7 @@ class RelightTest(ToolTest):
         done = self.good("relight", "room.ff", "--json", "lit.json", "--set", "shed.exitance=1")
         # The shed's faces look inward, and there was no lamp.
         self.assertRegex(done.stderr, r"note: lost_light: .*'shed'")
-        self.assertRegex(done.stderr, r"note: lost_light: .*\b[1-9][0-9]* sides? of faces")
+        self.assertRegex(done.stderr, r"note: lost_light: .*\b[1-9][0-9]* sides?\b")
         # The patches stay those of the stored form factors.
         done = self.good("relight", "room.ff", "--json", "dark.json")
         self.assertNotIn("lost_light", done.stderr)
@@ -149,7 +149,7 @@ class RelightTest(ToolTest):
         self.find()
         done = self.run_tool("relight", "room.ff", "-o", "a.vtp")
         self.assertEqual(done.returncode, INPUT)
-        self.assertIn("'lamp' looks like a lamp", done.stderr)
+        self.assertIn("--set lamp.radiance=10", done.stderr)
         self.good("relight", "room.ff", "-o", "a.vtp", "--set", "lamp.exitance=5")
 
     def test_same_bits_for_any_number_of_threads(self):
@@ -164,11 +164,11 @@ class RelightTest(ToolTest):
     def test_errors_that_are_not_known_have_a_remedy(self):
         self.find()
         done = self.good("relight", "room.ff", "-o", "a.vtp")
-        self.assertRegex(done.stdout, r"not known.*\nhint: patchlight solve MODEL")
+        self.assertIn("\nhint: patchlight solve ", done.stdout)
         self.find("--method", "rays", folder="rays.ff")
-        done = self.good("relight", "rays.ff", "-o", "a.vtp")
-        self.assertRegex(done.stdout, r"error of the rays: \S+ % of the reflected light; ")
-        self.assertRegex(done.stdout, r"not known.*\nhint: patchlight solve MODEL")
+        done = self.good("relight", "rays.ff", "--json", "a.json")
+        self.assertIn(f" {100 * self.report('a.json')['transport']['ray_error']:.2g} %", done.stdout)
+        self.assertIn("\nhint: patchlight solve ", done.stdout)
 
     def test_not_converged_is_said(self):
         self.find()
@@ -188,12 +188,12 @@ class RelightTest(ToolTest):
         self.find()
         to = ["-o", "a.vtp"]
         self.expect_refused(USAGE, says=["FOLDER"])
-        self.expect_refused(USAGE, "room.ff", says=["nothing would be written"])
+        self.expect_refused(USAGE, "room.ff", says=["-o, --html, --series"])
         self.expect_refused(USAGE, "room.ff", *to, "--patches", "9", says=["unknown option --patches"])
-        self.expect_refused(USAGE, "room.ff", "-o", "room.ff/a.vtp", says=["lies in the folder of form factors"])
-        self.expect_refused(USAGE, "room.ff", "-o", "room.ff/mesh.vtp", says=["lies in the folder of form factors"])
+        self.expect_refused(USAGE, "room.ff", "-o", "room.ff/a.vtp", says=["-o: 'room.ff/a.vtp' "])
+        self.expect_refused(USAGE, "room.ff", "-o", "room.ff/mesh.vtp", says=["-o: 'room.ff/mesh.vtp' "])
         self.expect_refused(INPUT, "missing.ff", *to, says=["missing.ff", "no info.json"])
-        self.expect_refused(INPUT, "room.obj", *to, says=["room.obj", "a folder that patchlight form-factors has written"])
+        self.expect_refused(INPUT, "room.obj", *to, says=["room.obj: ", "patchlight form-factors"])
         self.expect_refused(INPUT, "room.ff", *to, "--set", "glass.exitance=1", says=["'glass'", "white, lamp"])
         self.expect_refused(USAGE, "room.ff", *to, "--set", "lamp.exitance=-1", says=["--set", "negative"])
         self.expect_refused(INPUT, "room.ff", *to, "--set", "lamp.exitance=0", says=["no light source"])
@@ -205,13 +205,13 @@ class RelightTest(ToolTest):
         scene = self.folder / "room.ff/scene.json"
         text = scene.read_text()
         scene.unlink()
-        self.expect_refused(INPUT, "room.ff", *to, says=["no scene.json", "compute them again"])
+        self.expect_refused(INPUT, "room.ff", *to, says=["scene.json"])
         scene.write_text(text[:-100])
-        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff/scene.json", "compute the form factors again"])
+        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff/scene.json: "])
         moved = json.loads(text)
         moved["vertices"][0] += 1e-9
         scene.write_text(json.dumps(moved))
-        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff: found form factors of"])
+        self.expect_refused(INPUT, "room.ff", *to, says=["room.ff: ", "patchlight form-factors MODEL -o room.ff"])
         scene.write_text(text)
 
         F = self.folder / "room.ff/F.npy"

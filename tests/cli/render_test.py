@@ -186,9 +186,10 @@ class RenderTest(ToolTest):
         self.solve()
         words = ["render", "room.obj", "--solution", "room.vtp", "-o", "room.exr", "--size", "24x16"]
         told = self.good(*words, "--picture-error", "0.01%", "--picture-samples", "4").stderr
-        self.assertRegex(told, r"warning: room.exr: the pixels' standard error is [\d.]+% .* not the 0.01% of --picture-error")
-        self.assertRegex(told, r"--picture-samples \d+, or a larger --picture-error")
-        self.assertNotIn("standard error", self.good(*words, "--picture-error", "50%").stderr)
+        reached = re.search(r"warning: room\.exr: .* ([\d.]+)% .* 0\.01% .*--picture-error", told)
+        self.assertGreater(float(reached[1]), 0.01)
+        self.assertGreater(int(re.search(r"--picture-samples (\d+)", told)[1]), 4)
+        self.assertNotIn("warning: ", self.good(*words, "--picture-error", "50%").stderr)
         self.assertIn("power of two", self.refused(USAGE, *words, "--picture-samples", "65"))
 
     def test_two_solutions_stand_beside_each_other(self):
@@ -226,7 +227,7 @@ class RenderTest(ToolTest):
         self.write("text.vtp", "no file of VTK\n")
         self.assertIn("text.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "text.vtp", "-o", "a.png"))
         alone = self.refused(USAGE, "render", "room.vtp", "-o", "a.png")
-        self.assertIn("render MODEL --solution room.vtp", alone)
+        self.assertIn("--solution room.vtp", alone)
         grid = self.refused(USAGE, "render", "room.obj", "--solution", "room.vtu", "-o", "a.png")
         self.assertIn("-o RESULT.vtp", grid)
         self.assertIn("none.vtp", self.refused(INPUT, "render", "room.obj", "--solution", "none.vtp", "-o", "a.png"))

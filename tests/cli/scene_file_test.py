@@ -171,13 +171,13 @@ class SceneFileTest(ToolTest):
 
     def test_refusals(self):
         self.write("unknown.toml", '[[model]]\nfile = "room.obj"\nscales = 2\n')
-        self.refused(INPUT, ["unknown.toml:3: ", "'scales'", "did you mean 'scale'?"], "solve", "unknown.toml", "-o",
+        self.refused(INPUT, ["unknown.toml:3: ", "'scales'", " 'scale'?"], "solve", "unknown.toml", "-o",
                      "a.vtp")
         self.refused(INPUT, ["unknown.toml:3: "], "check", "unknown.toml")
         self.write("nothing.toml", 'unit = "m"\n')
         self.refused(INPUT, ["nothing.toml", "names no model"], "solve", "nothing.toml", "-o", "a.vtp")
         self.write("bad.toml", "[[model]\n")
-        self.refused(INPUT, ["bad.toml:1: is not TOML"], "solve", "bad.toml", "-o", "a.vtp")
+        self.refused(INPUT, ["bad.toml:1: "], "solve", "bad.toml", "-o", "a.vtp")
         self.refused(INPUT, ["none.toml", "does not exist"], "solve", "none.toml", "-o", "a.vtp")
         self.write("plain.toml", '[[model]]\nfile = "room.obj"\n')
         self.refused(INPUT, ["--points-output", "no sensors"], "solve", "plain.toml", "--points-output", "a.csv")

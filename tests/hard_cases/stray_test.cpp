@@ -29,8 +29,7 @@ Scene with_stray_triangle(Scene scene, double metres) {
 
 bool names_what_is_far(const Scene& scene) {
   return std::any_of(scene.diagnostics.begin(), scene.diagnostics.end(), [](const Diagnostic& problem) {
-    return problem.code == DiagnosticCode::implausible_size &&
-           problem.text.find("from the rest of the model") != std::string::npos;
+    return problem.code == DiagnosticCode::implausible_size && !problem.faces.empty();
   });
 }
 

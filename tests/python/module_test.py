@@ -53,7 +53,7 @@ class ModuleTest(unittest.TestCase):
         self.assertIn("23 polygons; materials white, red, green, light", repr(scene))
         scene.materials["red"].reflectance = 0.3
         self.assertEqual(list(scene.materials[1].reflectance), [0.3, 0.3, 0.3])
-        with self.assertRaisesRegex(KeyError, "found 'whit'; expected one of white, red, green, light"):
+        with self.assertRaisesRegex(KeyError, "'whit'.*white, red, green, light"):
             scene.materials["whit"]
 
     def test_arrays_are_the_solvers_own_memory(self):
@@ -96,7 +96,7 @@ class ModuleTest(unittest.TestCase):
             return apply(exitance)
 
         pl.solve(self.scene, own=solver, patches=60)
-        with self.assertRaisesRegex(pl.InputError, "after the solver has ended"):
+        with self.assertRaisesRegex(pl.InputError, "after the solver"):
             kept[0](numpy.zeros((60, 3)))
 
     def test_arrays_fit_the_equations(self):
@@ -233,7 +233,7 @@ class ModuleTest(unittest.TestCase):
         self.assertIn(str(caught.exception), said)
         with self.assertRaises(pl.InputError) as caught:
             pl.solve(self.scene, pacthes=3)
-        self.assertIn("did you mean --patches", str(caught.exception))
+        self.assertIn(" --patches?", str(caught.exception))
         with self.assertRaises(ValueError):
             pl.read("nowhere.obj")
 
@@ -306,14 +306,14 @@ class ModuleTest(unittest.TestCase):
                                               "solved by nothing() in place of the solver"])
 
     def test_a_scene_that_is_read_takes_no_options_of_reading(self):
-        with self.assertRaisesRegex(pl.InputError, r"found sky: a scene that is read stays as it is; expected pl.read\(FILE, sky=...\)"):
+        with self.assertRaisesRegex(pl.InputError, r"\bsky\b.*pl\.read\(FILE, sky=...\)"):
             pl.solve(self.scene, sky="overcast:10000lx")
         in_centimetres = pl.solve(BOX, unit="cm", patches=60).area.sum()
         self.assertAlmostEqual(in_centimetres / pl.solve(BOX, unit="m", patches=60).area.sum(), 1e-4, 9)
 
     def test_an_option_that_a_call_does_not_use_is_refused(self):
         for name, value in (("html", "a.html"), ("output", "a.vtp"), ("form_factors", "a.ff"), ("picture", "a.png")):
-            with self.assertRaisesRegex(pl.InputError, f"{name}: found an option that solve"):
+            with self.assertRaisesRegex(pl.InputError, f"^{name}: "):
                 pl.solve(self.scene, patches=60, **{name: value})
         with self.assertRaisesRegex(pl.InputError, "tolerance"):
             pl.transport(self.scene, patches=60, tolerance=0.1)

@@ -3,6 +3,7 @@
 #include "patchlight/scene/scene.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace patchlight::test {
@@ -13,6 +14,16 @@ inline std::ptrdiff_t count_of(const Diagnostics& diagnostics, DiagnosticCode co
 }
 
 inline bool has(const Diagnostics& diagnostics, DiagnosticCode code) { return count_of(diagnostics, code) > 0; }
+
+/// True if one finding of this code has all of these words: names, values, lines and options. No test compares the
+/// sentence around them.
+inline bool has(const Diagnostics& diagnostics, DiagnosticCode code, const std::vector<std::string>& words) {
+  return std::any_of(diagnostics.begin(), diagnostics.end(), [&](const Diagnostic& found) {
+    return found.code == code && std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+             return found.text.find(word) != std::string::npos;
+           });
+  });
+}
 
 inline std::vector<DiagnosticCode> codes_of(const Diagnostics& diagnostics) {
   std::vector<DiagnosticCode> codes;

@@ -74,7 +74,7 @@ TEST_F(Daylight, IsThatOfASceneFile) {
 TEST_F(Daylight, IsRefusedWhereItsPartsDoNotFit) {
   DaylightSetting no_sun;
   no_sun.sky = SkyKind::cie_clear;
-  EXPECT_NE(refusal_of(no_sun).find("position of the sun"), std::string::npos);
+  EXPECT_NE(refusal_of(no_sun).find("read.daylight.sun"), std::string::npos);
   DaylightSetting weak;
   weak.sun = DaylightSetting::SunPlace{};
   EXPECT_NE(refusal_of(weak).find("illuminance missing"), std::string::npos);
@@ -84,7 +84,7 @@ TEST_F(Daylight, IsRefusedWhereItsPartsDoNotFit) {
   DaylightSetting both;
   both.sky = SkyKind::uniform;
   both.weather = DaylightSetting::WeatherFile{"city.epw"};
-  EXPECT_NE(refusal_of(both).find("both sun and sky"), std::string::npos);
+  EXPECT_NE(refusal_of(both).find("read.daylight.weather"), std::string::npos);
   DaylightSetting below;
   below.sky = SkyKind::cie_clear;
   below.sun = DaylightSetting::SunPlace{-5, 180};

@@ -154,7 +154,7 @@ TEST_F(Formats, WithoutMaterialsAllIsOneGreyThatCanBeSet) {
     ASSERT_EQ(scene.materials.size(), 1U);
     EXPECT_TRUE((scene.materials[0].reflectance == rgb(0.5, 0.5, 0.5)).all());
     EXPECT_TRUE((scene.materials[0].exitance == 2 * std::numbers::pi * rgb(1, 1, 1)).all());
-    EXPECT_TRUE(any_contains(scene.diagnostics, "'default'"));
+    EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::assumed_material, {"'default'"}));
   }
 }
 
@@ -186,7 +186,7 @@ TEST_F(Formats, PlyPassesOverWhatIsNotGeometry) {
   EXPECT_EQ(area_vector(corner_points(scene, 0)), Vector(0, 0, 1));
   EXPECT_EQ(scene.polygons[0].line, 21U);
   EXPECT_EQ(number_of(scene, DiagnosticCode::left_out), 1U) << "light";
-  EXPECT_TRUE(any_contains(scene.diagnostics, "colors of the vertices"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"colors"}));
 }
 
 TEST_F(Formats, OffMayHaveCommentsColorsAndCountsBesideTheKeyWord) {
@@ -273,8 +273,7 @@ TEST_F(Formats, GltfTexturesAreReplacedByTheirMean) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "data:image/png;base64,)" + std::string(image) + "\"}]}";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.4, 0.2, 0.1), 1e-12)) << scene.materials[0].reflectance;
-  EXPECT_TRUE(
-      any_contains(scene.diagnostics, "without valid texture coordinates, which use the mean of their picture: "));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_picture));
 }
 
 TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
@@ -286,7 +285,7 @@ TEST_F(Formats, GltfWithAMissingTextureIsReadWithANote) {
   json += R"(, "textures": [{"source": 0}], "images": [{"uri": "absent.png"}]})";
   const Scene scene = read_scene(write("room.gltf", json));
   EXPECT_TRUE(scene.materials[0].reflectance.isApprox(rgb(0.8, 0.4, 0.2), 1e-12));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "unreadable textures are ignored; only the color factor is used: wall"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::unreadable_picture, {"wall"}));
 }
 
 TEST_F(Formats, UnknownExtensionsAreRefusedByName) {
@@ -340,7 +339,7 @@ TEST_F(Formats, AGltfNodeIsInTheTreeOnce) {
   for (const std::string& tree : {nodes + "{}", std::string(R"({"children": [0]})")}) {
     const auto file =
         write("tree.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [)" + tree + "]}");
-    EXPECT_NE(refusal(file).find(" is missing, or there twice, in the tree"), std::string::npos);
+    EXPECT_NE(refusal(file).find("tree.gltf: "), std::string::npos);
   }
 }
 
@@ -364,7 +363,7 @@ TEST_F(Formats, EqualMaterialsOfSeveralFilesAreShared) {
   ASSERT_EQ(scene.polygons.size(), 4U);
   EXPECT_EQ(scene.polygons[0].material, scene.polygons[2].material);
   EXPECT_EQ(scene.materials[scene.polygons[3].material].name, "floor (b.obj)");
-  EXPECT_TRUE(any_contains(scene.diagnostics, "'floor (b.obj)'"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::renamed_material, {"'floor (b.obj)'"}));
 }
 
 TEST_F(Formats, AFaultIsFoundInItsOwnFile) {

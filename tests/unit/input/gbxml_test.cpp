@@ -142,7 +142,7 @@ TEST_F(Gbxml, SidesHaveTheReflectancesOfTheirKind) {
   const Material& pane = scene.materials.at(scene.polygons.at(named(scene, "window")).material);
   EXPECT_EQ(pane.name, "clear");
   EXPECT_NEAR(pane.transmittance[0], 0.6, 1e-15);
-  EXPECT_TRUE(any_contains(scene.diagnostics, "walls and doors 0.5"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::assumed_material, {"0.5"}));
 }
 
 TEST_F(Gbxml, WhatIsNotStatedIsSaidAndAirIsOpen) {
@@ -154,8 +154,8 @@ TEST_F(Gbxml, WhatIsNotStatedIsSaidAndAirIsOpen) {
   EXPECT_THROW(named(scene, "gap"), std::runtime_error);
   EXPECT_THROW(named(scene, "glazed"), std::runtime_error);  // the window takes all of it
   EXPECT_NEAR(area_of(scene, "all"), 9, 1e-12);
-  EXPECT_TRUE(any_contains(scene.diagnostics, "get 0.7: OperableWindow"));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "open, left out: 1 (gap)"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::assumed_material, {"0.7", "OperableWindow"}));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"1 (gap)"}));
 }
 
 TEST_F(Gbxml, WhatCannotBeReadIsRefusedWithItsLine) {

@@ -199,7 +199,8 @@ TEST_F(Ifc, AzimuthsAreFromTrueNorth) {
   EXPECT_LT((read_scene(written, options).sun.value().direction - to_sun).norm(), 1e-6);
   const Scene plain = read_scene(written);
   EXPECT_LT((plain.north - Vector(0.5, std::sqrt(0.75), 0)).norm(), 1e-9);
-  EXPECT_TRUE(any_contains(plain.diagnostics, "true north of the file"));
+  EXPECT_TRUE(has(plain.diagnostics, DiagnosticCode::north_of_file));
+  ;
   const std::string model = "[[model]]\nfile = \"slab.ifc\"\n";
   const Scene turned = read_scene(write("turned.toml", model + "rotate = {axis = \"z\", degrees = 30}\n"));
   EXPECT_LT((turned.north - Vector::UnitY()).norm(), 1e-9);
@@ -236,7 +237,7 @@ TEST_F(Ifc, DamagedFilesAreReadOrRefused) {
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
   }
-  EXPECT_NE(refusal(write("damaged.ifc", "x")).find("is not an IFC file"), std::string::npos);
+  EXPECT_NE(refusal(write("damaged.ifc", "x")).find("damaged.ifc: "), std::string::npos);
 }
 
 TEST_F(Ifc, WithoutNodeTheRemedyIsNamed) {
@@ -245,9 +246,8 @@ TEST_F(Ifc, WithoutNodeTheRemedyIsNamed) {
   setenv("PATH", folder_.c_str(), 1);
   const std::string message = refusal(written);
   setenv("PATH", path.c_str(), 1);
-  EXPECT_NE(message.find("IFC files need Node.js, which is not installed; run scripts/install_packages.sh"),
-            std::string::npos)
-      << message;
+  for (const char* word : {"Node.js", "scripts/install_packages.sh"})
+    EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
 }  // namespace

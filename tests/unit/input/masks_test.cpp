@@ -74,8 +74,8 @@ const std::string blended = R"("alphaMode":"BLEND",)";
 TEST_F(GltfMasks, HalfOpaqueLetsHalfOfTheLightThrough) {
   const Scene scene = read({255, 0, 255, 0}, masked);
   expect_holes(scene.materials[0], .5, rgb(.25, .25, 0));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "error bars do not include the effect of hole positions: leaves (0.5)"));
-  EXPECT_FALSE(any_contains(scene.diagnostics, "is ignored"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::cut_out_material, {"leaves (0.5)"}));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::simplified_part));
   EXPECT_TRUE(std::none_of(scene.unsimulated.begin(), scene.unsimulated.end(), [](const UnsimulatedMaterials& found) {
     return found.property == UnsimulatedProperty::glass;
   }));
@@ -101,10 +101,10 @@ TEST_F(GltfMasks, OpaquePicturesAndModesAreWhatTheyWere) {
   const Scene opaque = read({255, 255, 255, 255}, masked);
   EXPECT_TRUE(opaque.materials[0].texture);
   EXPECT_FALSE(opaque.materials[0].stated_pane);
-  EXPECT_FALSE(any_contains(opaque.diagnostics, "cut out by pictures"));
+  EXPECT_FALSE(has(opaque.diagnostics, DiagnosticCode::cut_out_material));
   const Scene ignored = read({255, 0, 255, 0}, "");
   EXPECT_TRUE(ignored.materials[0].texture);
-  EXPECT_FALSE(any_contains(ignored.diagnostics, "cut out by pictures"));
+  EXPECT_FALSE(has(ignored.diagnostics, DiagnosticCode::cut_out_material));
 }
 
 // Fractions of alphas, added after a division, are inexact by rounding.
@@ -115,8 +115,8 @@ TEST_F(GltfMasks, ThatAllTexelsReachAreNone) {
   const Scene scene = read_picture(png_of(11, 13, pixels, 4), masked);
   EXPECT_TRUE(scene.materials[0].texture);
   EXPECT_FALSE(scene.materials[0].stated_pane);
-  EXPECT_FALSE(any_contains(scene.diagnostics, "cut out by pictures"));
-  EXPECT_FALSE(any_contains(scene.diagnostics, "materials read as panes"));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::cut_out_material));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::read_as_pane));
 }
 
 // White with the covered fraction m reflects m, which is 1 - (1 - m) to rounding.
@@ -125,7 +125,7 @@ TEST_F(GltfMasks, OfWhiteReflectWhatTheyCover) {
   for (std::size_t k = 1; k < 10; ++k) pixels[4 * k + 3] = '\0';
   const Scene scene = read_picture(png_of(10, 1, pixels, 4), masked);
   expect_holes(scene.materials[0], .1, rgb(.1, .1, .1));
-  EXPECT_FALSE(any_contains(scene.diagnostics, "is lowered"));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::lowered_reflectance));
 }
 
 // A lamp with half coverage emits half. An opaque one emits all.
@@ -167,8 +167,8 @@ TEST_F(ObjMasks, AlphaOfTheColoursOwnPictureWeighsThem) {
   write("four.png", four_pixels({255, 0, 255, 0}));
   const Scene scene = read("Kd .8 .8 .8\nmap_Kd four.png\nmap_d four.png\n");
   expect_holes(scene.materials[0], .5, .8 * rgb(.25, .25, 0));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "error bars do not include the effect of hole positions: leaves (0.5)"));
-  EXPECT_FALSE(any_contains(scene.diagnostics, "ignored"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::cut_out_material, {"leaves (0.5)"}));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::simplified_part));
 }
 
 TEST_F(ObjMasks, AGreyPictureCoversByItsNumbers) {
@@ -200,7 +200,7 @@ TEST_F(ObjMasks, WithOptionsThatChangeNumbersAreIgnored) {
     SCOPED_TRACE(options);
     const Scene scene = read("Kd .8 .8 .8\nmap_d " + std::string(options) + " four.png\n");
     EXPECT_FALSE(scene.materials[0].stated_pane);
-    EXPECT_TRUE(any_contains(scene.diagnostics, "map_d (transparency by a picture) is ignored: leaves"));
+    EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"map_d", "leaves"}));
   }
   for (const char* options : {"-imfchan m", "-mm 0 1", "-clamp on"})
     EXPECT_TRUE(read("Kd .8 .8 .8\nmap_d " + std::string(options) + " four.png\n").materials[0].stated_pane) << options;
@@ -210,15 +210,14 @@ TEST_F(ObjMasks, WithoutAlphaTheColourPictureIsNone) {
   write("two.png", two_pixels());
   const Scene scene = read("Kd .8 .8 .8\nmap_Kd two.png\nmap_d two.png\n");
   EXPECT_FALSE(scene.materials[0].stated_pane);
-  EXPECT_FALSE(any_contains(scene.diagnostics, "ignored"));
+  EXPECT_FALSE(has(scene.diagnostics, DiagnosticCode::simplified_part));
 }
 
 TEST_F(ObjMasks, ThatCannotBeReadAreNamed) {
   const Scene scene = read("Kd .8 .8 .8\nmap_d none.png\n");
   EXPECT_FALSE(scene.materials[0].stated_pane);
-  EXPECT_TRUE(any_contains(scene.diagnostics,
-                           "none.png of material 'leaves' (map_d, line 3 of its material file) cannot be read"));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "map_d (transparency by a picture) is ignored: leaves"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::unreadable_picture, {"none.png", "'leaves'", "map_d", "line 3"}));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"map_d", "leaves"}));
 }
 
 }  // namespace

@@ -67,18 +67,18 @@ TEST(ParseMaterialSetting, RefusalsTellQuantitiesWithTheirUnits) {
     EXPECT_NE(refusal_of(text).find(words), std::string::npos) << refusal_of(text);
   };
   for (const char* text : {"lamp.colour=1", "lamp.flux=800lm", "lamp"}) {
-    says(text, "exitance (W/m^2), radiance (W/(m^2 sr)) or index, as numbers without a unit");
+    for (const char* words : {"exitance (W/m^2)", "radiance (W/(m^2 sr))", "index"}) says(text, words);
   }
-  says("lamp.exitance=800lm", "'800lm' is not a finite number; expected W/m^2 without the unit");
-  says("lamp.radiance=10cd", "expected W/(m^2 sr) without the unit");
-  says("wall.reflectance=half", "expected a fraction from 0 to 1, or a percentage");
+  for (const char* words : {"'800lm'", "W/m^2"}) says("lamp.exitance=800lm", words);
+  for (const char* words : {"'10cd'", "W/(m^2 sr)"}) says("lamp.radiance=10cd", words);
+  for (const char* words : {"'half'", "0 to 1"}) says("wall.reflectance=half", words);
 }
 
 // Phi = 179 lm/W * A * M for one exitance M in all bands.
 TEST(ParseMaterialSetting, LumensAreAnExitanceByTheArea) {
   for (const char* text : {"lamp.flux=800lm", "lamp.lumens=800", "lamp.watts=60"}) {
     const std::string refusal = refusal_of(text);
-    EXPECT_NE(refusal.find("\nhint: exitance = lumens / (179 x area in m^2)"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("\nhint: exitance = lumens / (179 "), std::string::npos) << refusal;
   }
   EXPECT_EQ(refusal_of("lamp.colour=1").find("lumens"), std::string::npos);
 }

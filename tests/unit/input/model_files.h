@@ -3,6 +3,8 @@
 #include "patchlight/base/error.h"
 #include "patchlight/input/read_scene.h"
 
+#include "support/diagnostics_of.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -25,10 +27,7 @@ inline std::string refusal(const std::filesystem::path& file, const ReadOptions&
   return {};
 }
 
-inline bool any_contains(const Diagnostics& diagnostics, const std::string& part) {
-  return std::any_of(diagnostics.begin(), diagnostics.end(),
-                     [&](const Diagnostic& found) { return found.text.find(part) != std::string::npos; });
-}
+using test::has;
 
 /// Sum of the counts in the diagnostics of a code.
 inline std::size_t number_of(const Scene& scene, DiagnosticCode code) {

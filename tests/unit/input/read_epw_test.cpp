@@ -52,12 +52,12 @@ TEST(ReadEpw, SunStandsWhereItDoesInTheMiddleOfTheHour) {
 }
 
 TEST(ReadEpw, RefusesWithFileAndLine) {
-  EXPECT_NE(refusal({2000, 10, 17, 13}).find("place.epw:5: the direct normal irradiance"), std::string::npos);
-  EXPECT_NE(refusal({2000, 6, 1, 12}).find("found no weather for month 6, day 1, hour 12"), std::string::npos);
+  EXPECT_NE(refusal({2000, 10, 17, 13}).find("place.epw:5: "), std::string::npos);
+  EXPECT_NE(refusal({2000, 6, 1, 12}).find("month 6, day 1, hour 12"), std::string::npos);
   EXPECT_NE(refusal({2000, 10, 17, 12}, weather.substr(weather.find("1999"))).find("place.epw:1: "), std::string::npos);
   std::string spoilt = weather;
   spoilt.replace(spoilt.find(",800,"), 5, ",high,");
-  EXPECT_NE(refusal({2000, 10, 17, 12}, spoilt).find("place.epw:4: found 'high' as field 15"), std::string::npos);
+  EXPECT_NE(refusal({2000, 10, 17, 12}, spoilt).find("place.epw:4: found 'high' "), std::string::npos);
 }
 
 }  // namespace

@@ -178,11 +178,9 @@ TEST_F(ReadScene, PicturesOfMapKdCountByTheirMean) {
   EXPECT_LT((scene.materials[1].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((scene.materials[2].reflectance - rgb(.5, 0, blue)).abs().maxCoeff(), 1e-12);
   EXPECT_EQ(scene.materials[3].reflectance[0], .4);
-  EXPECT_TRUE(any_contains(scene.diagnostics,
-                           "without valid texture coordinates, which use the mean of their picture: 3 (first at "));
-  EXPECT_TRUE(
-      any_contains(scene.diagnostics, "bad.png of material 'bad' (map_Kd, line 11 of its material file) is cut off"));
-  EXPECT_TRUE(any_contains(scene.diagnostics, "Kd is used instead: bad"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_picture, {": 3 ", "m.obj:"}));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::unreadable_picture, {"bad.png", "'bad'", "map_Kd", "line 11"}));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"Kd", ": bad"}));
 }
 
 TEST_F(ReadScene, NamesWhatItIgnores) {
@@ -198,13 +196,16 @@ TEST_F(ReadScene, NamesWhatItIgnores) {
     text += std::string("usemtl ") + name + "\nf 1 2 3\n";
   }
   const Scene scene = read_scene(write("m.obj", text));
-  for (const char* note :
-       {"Ks (gloss) is ignored: glossy", "Kd is used instead: painted, leaves", "picture) is ignored: leaves",
-        "matt: mirror", "texture): bare", "colors of vertices, ignored: 1"}) {
-    EXPECT_TRUE(any_contains(scene.diagnostics, note)) << note;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"Ks", ": glossy"},
+                                                {"Kd", ": painted, leaves"},
+                                                {"map_d", ": leaves"},
+                                                {"illum", ": mirror"}}) {
+    EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, words)) << words[0];
   }
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::assumed_material, {"Kd", ": bare"}));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::simplified_part, {"colors", ": 1"}));
   EXPECT_EQ(number_of(scene, DiagnosticCode::little_left_out), 3U) << "two lines, one point";
-  EXPECT_FALSE(any_contains(scene.diagnostics, "plain"));
+  for (const Diagnostic& found : scene.diagnostics) EXPECT_EQ(found.text.find("plain"), std::string::npos);
   ASSERT_EQ(scene.unsimulated.size(), 2U);
   EXPECT_EQ(scene.unsimulated[0].property, UnsimulatedProperty::mirror);
   EXPECT_EQ(scene.unsimulated[0].materials, 2U) << "glossy, mirror";

@@ -95,15 +95,15 @@ TEST_F(StatedPanes, WhatProgramsWriteOfOpaqueMaterialsIsNone) {
     SCOPED_TRACE(statements);
     expect_opaque(glass_of(statements));
   }
-  EXPECT_TRUE(any_contains(of_mtl("d 1\nTr 1\n").diagnostics, "contradict each other, the surface is opaque: glass"));
+  EXPECT_TRUE(has(of_mtl("d 1\nTr 1\n").diagnostics, DiagnosticCode::simplified_part, {"d and Tr", "glass"}));
 }
 
 TEST_F(StatedPanes, WhereMostMaterialsLetAllThroughTheyAreOpaque) {
   for (const char* all : {"d 0\n", "Tr 1\n"}) {
     const Scene scene = of_mtl(all, all);
     for (const Material& material : scene.materials) expect_opaque(material);
-    EXPECT_TRUE(
-        any_contains(scene.diagnostics, "these become opaque: wall, glass; read.settings wall.transmittance=1"));
+    EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::assumed_material,
+                    {"wall, glass", "read.settings wall.transmittance=1"}));
   }
   // One of two is used.
   expect_transmittance(of_mtl("d 0\n").materials[1], rgb(1, 1, 1));
@@ -153,7 +153,7 @@ TEST_F(StatedPanes, GltfAlphaIsWhatIsCovered) {
   for (const char* mode : {R"(, "alphaMode": "MASK")", R"(, "alphaMode": "OPAQUE")", ""})
     expect_opaque(of_gltf(base_color + std::string(mode)).materials[0]);
   const Scene masked = of_gltf(std::string(base_color) + R"(, "alphaMode": "MASK")");
-  EXPECT_TRUE(any_contains(masked.diagnostics, "masks that remove a whole surface are ignored: it is opaque: wall"));
+  EXPECT_TRUE(has(masked.diagnostics, DiagnosticCode::simplified_part, {"masks", "wall"}));
   ASSERT_EQ(masked.unsimulated.size(), 2U) << "metal, mask";
 }
 
@@ -192,9 +192,8 @@ TEST_F(StatedPanes, ASettingMakesThemOpaque) {
     }
     EXPECT_EQ(texts_of(found.diagnostics), texts_of(expected.diagnostics));
   }
-  EXPECT_TRUE(any_contains(of_mtl("d 0.3\n").diagnostics,
-                           "panes, which let light through: glass (d 0.3: transmittance 0.7); "
-                           "read.settings glass.transmittance=0 makes it opaque"));
+  EXPECT_TRUE(has(of_mtl("d 0.3\n").diagnostics, DiagnosticCode::read_as_pane,
+                  {"glass (d 0.3: transmittance 0.7)", "read.settings glass.transmittance=0"}));
 }
 
 TEST_F(StatedPanes, AreThoseThatASettingMakes) {
@@ -218,8 +217,8 @@ TEST_F(StatedPanes, ReflectNoMoreThanTheyDoNotLetThrough) {
   const Scene scene = of_mtl("d 0.3\nTf 1 0.5 0.1\n", "Kd 0.5 0.5 0.5\n", settings({"*.reflectance=0.6"}));
   EXPECT_TRUE((scene.materials[1].reflectance == (1 - scene.materials[1].transmittance).min(0.6)).all());
   EXPECT_TRUE((scene.materials[0].reflectance == 0.6).all());
-  EXPECT_TRUE(any_contains(scene.diagnostics, "lowered to 1 - transmittance: glass"));
-  EXPECT_FALSE(any_contains(of_mtl("d 0.3\n").diagnostics, "lowered"));
+  EXPECT_TRUE(has(scene.diagnostics, DiagnosticCode::lowered_reflectance, {"glass"}));
+  EXPECT_FALSE(has(of_mtl("d 0.3\n").diagnostics, DiagnosticCode::lowered_reflectance));
   const Material restored = glass_of("d 0.3\n", settings({"glass.reflectance=0.6", "glass.transmittance=0"}));
   EXPECT_TRUE((restored.reflectance == 0.6).all());
 }
@@ -228,13 +227,13 @@ TEST_F(StatedPanes, AnIndexAloneIsRefused) {
   of_mtl("");
   for (const char* setting : {"glass.index=1.6", "*.index=1.6"}) {
     const std::string message = refusal(folder_ / "m.obj", settings({setting}));
-    EXPECT_EQ(message.rfind("read.settings: found the index of refraction 1.6", 0), 0U) << message;
+    EXPECT_TRUE(message.starts_with("read.settings: ")) << message;
+    EXPECT_NE(message.find("1.6"), std::string::npos) << message;
     EXPECT_NE(message.find(".transmittance=0.8"), std::string::npos) << message;
   }
   const std::string model = "[[model]]\nfile = \"m.obj\"\n[[material]]\nname = \"glass\"\nindex = 1.6\n";
   const std::string message = refusal(write("m.toml", model));
-  EXPECT_NE(message.find("m.toml:4: found the index of refraction 1.6 for material 'glass'"), std::string::npos)
-      << message;
+  for (const char* word : {"m.toml:4: ", "1.6", "'glass'"}) EXPECT_NE(message.find(word), std::string::npos) << message;
   // In any order, and a transmittance of 0 resets an earlier one.
   EXPECT_EQ(glass_of("", settings({"glass.index=1.6", "glass.transmittance=0.8"})).index, 1.6);
   EXPECT_NO_THROW(read_scene(write("m.toml", model + "transmittance = 0.8\n"), settings({"glass.transmittance=0"})));

@@ -98,13 +98,12 @@ TEST(Survey, LuminairesFarFromTheModelAreAWarning) {
   scene.luminaires.push_back(lamp_at(34.1));
   const SceneReport report = survey_of(scene);
   ASSERT_TRUE(has(report, DiagnosticCode::implausible_size));
-  EXPECT_EQ(report.diagnostics.front().text,
-            "1 luminaire lies 30.1 m from the model, which is 5.59 m long (the first: 'far' of a.toml:7). Is its "
-            "position in the unit of its file?");
+  for (const char* words : {"1 luminaire ", "30.1 m", "5.59 m", "'far' of a.toml:7"})
+    EXPECT_NE(report.diagnostics.front().text.find(words), std::string::npos) << report.diagnostics.front().text;
   scene.luminaires.push_back(lamp_at(304));
   ASSERT_EQ(problems_with_size(scene).size(), 1U) << "what solve and plan tell";
   EXPECT_EQ(problems_with_size(scene).front().count, 2U);
-  EXPECT_NE(problems_with_size(scene).front().text.find("2 luminaires lie up to 300 m"), std::string::npos);
+  EXPECT_NE(problems_with_size(scene).front().text.find(" 300 m"), std::string::npos);
 }
 
 // The room's ceiling lies at 3 m.
@@ -170,8 +169,8 @@ TEST(Survey, ProposesASkyOnlyWhereItGetsIn) {
   const FirstLight luminaire = survey_of(closed).first_light.value();
   EXPECT_EQ(luminaire.setting, "") << "it takes a scene file";
   EXPECT_EQ(luminaire.advice.find("read.daylight.sky"), std::string::npos) << luminaire.advice;
-  EXPECT_NE(luminaire.advice.find("the room has no window ("), std::string::npos) << luminaire.advice;
-  EXPECT_NE(luminaire.advice.find("create a scene with a lamp"), std::string::npos) << luminaire.advice;
+  EXPECT_NE(luminaire.advice.find("\nhint: "), std::string::npos) << luminaire.advice;
+  EXPECT_NE(luminaire.advice.find("patchlight init "), std::string::npos) << luminaire.advice;
 
   closed.materials[1].name = "lamp";
   EXPECT_EQ(first_light(closed).setting, "read.settings lamp.radiance=10");
@@ -181,7 +180,7 @@ TEST(Survey, ProposesASkyOnlyWhereItGetsIn) {
   EXPECT_EQ(first_light(open).setting, "read.daylight.sky=overcast:10000lx");
   const Scene body = with_box(empty_scene({grey(0.5)}), Point(0, 0, 0), Point(1, 1, 1), false);
   EXPECT_EQ(first_light(body).setting, "read.daylight.sky=overcast:10000lx");
-  EXPECT_NE(first_light(body).advice.find("add daylight from outside: read.daylight.sky"), std::string::npos)
+  EXPECT_NE(first_light(body).advice.find("read.daylight.sky=overcast:10000lx"), std::string::npos)
       << first_light(body).advice;
   EXPECT_FALSE(survey_of(furnished_room(0.5)).first_light) << "it has a lamp";
 }
