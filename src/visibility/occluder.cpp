@@ -181,6 +181,7 @@ struct Occluder::Tracer {
   float arriving_along(const Segment& ray, Crossed crossed) const;
   std::array<Crossed, ShadowPacket::size> crossed_by(const ShadowPacket& packet, unsigned blocked) const;
   std::optional<PolygonIndex> first_polygon(const Point& from, const Point& to) const;
+  bool has_opening(PolygonIndex polygon) const;
   Hit hit_at(const Ray& ray, const TrianglePlane& plane, float found) const;
   void trace_packet(std::span<const Segment> segments, float* arriving) const;
 };
@@ -310,6 +311,14 @@ std::optional<PolygonIndex> Occluder::Tracer::first_polygon(const Point& from, c
   return blockers->planes[query.hit.primID].polygon;
 }
 
+// A polygon that blocks nothing lies over a part of this one.
+bool Occluder::Tracer::has_opening(PolygonIndex polygon) const {
+  const auto blocks_nothing = [&](PolygonIndex p) { return left_out[p] != 0 || specular.is_clear(p); };
+  return std::ranges::any_of(std::array{Side::front, Side::back}, [&](Side side) {
+    return std::ranges::any_of(faces->covered_places.coverings.over_side(polygon, side), blocks_nothing);
+  });
+}
+
 bool Occluder::hides(std::span<const Point> first, std::span<const Point> second,
                      std::span<const PolygonIndex> own) const {
   std::vector<Point> from;
@@ -321,7 +330,7 @@ bool Occluder::hides(std::span<const Point> first, std::span<const Point> second
                  static_cast<double>(points.size()));
   };
   const auto cuts = [&](const std::optional<PolygonIndex>& polygon) {
-    return polygon && std::find(own.begin(), own.end(), *polygon) == own.end() &&
+    return polygon && std::find(own.begin(), own.end(), *polygon) == own.end() && !tracer_->has_opening(*polygon) &&
            cuts_all(tracer_->faces->covered_places.polygons[*polygon], from, to, in_plane_tolerance);
   };
   const auto met = tracer_->first_polygon(middle(from), middle(to));

@@ -266,6 +266,19 @@ TEST(GatherIrradiance, OfManyBrightPatchesIsThatOfAll) {
   EXPECT_LT(std::sqrt(squares / seeds), 1.3);
 }
 
+TEST(GatherIrradiance, OfBrightPatchesThatOneWallHidesIsZeroWithoutError) {
+  // The upper patches lie before the sensor, but the board hides each of them.
+  const Scene scene = with_quad(cube_room(0, 0), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5), Point(0, 1, 0.5)});
+  const PatchMesh mesh = fronts(scene, 0.025);
+  Field radiosity = Field::Zero(mesh.size(), 1);
+  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() > 0.55 ? 1 : 0;
+  const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.01), Vector::UnitZ()}};
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const GatheredIrradiance found = gather_irradiance(mesh, radiosity, occluder, sensors, {.slopes = false});
+  EXPECT_EQ(found.irradiance(0, 0), 0);
+  EXPECT_EQ(found.errors.rays(0, 0), 0);
+}
+
 TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
   const Scene scene = cube_room(0.5, 0.5);
   const PatchMesh mesh = fronts(scene, 0.5);

@@ -96,6 +96,25 @@ TEST(Occluder, ACoveredPlaceIsOutOfSight) {
   EXPECT_FALSE(occluder.is_covered(6, Side::front, below_rug));
 }
 
+TEST(Occluder, AWallWithAPaneDrawnOnItHidesNothingForSure) {
+  Scene scene = divided_room();
+  const std::vector<Point> left{Point(0.5, 1, 1)};
+  const std::vector<Point> right{Point(1.5, 0.9, 0.9), Point(1.5, 1.1, 0.9), Point(1.5, 1, 1.1)};
+  const auto hides = [&](Occluder::Blockers blockers) {
+    const Occluder occluder(scene, blockers, find_coverings(scene, kept_sides(scene, Sides::both)));
+    return occluder.hides(left, right);
+  };
+  EXPECT_TRUE(hides(Occluder::Blockers::opaque));
+  EXPECT_TRUE(hides(Occluder::Blockers::all));
+  scene.materials.push_back(grey(0.1));
+  scene.materials.back().transmittance = Spectrum::Constant(1, 0.8);
+  scene = with_quad(std::move(scene), {Point(1, 0.5, 0.5), Point(1, 1.5, 0.5), Point(1, 1.5, 1.5), Point(1, 0.5, 1.5)}, 1);
+  const Occluder sees(scene, Occluder::Blockers::all, find_coverings(scene, kept_sides(scene, Sides::both)));
+  EXPECT_GT(sees.transmittance(std::vector<Segment>{{left[0], right[0]}})[0], 0);
+  EXPECT_FALSE(hides(Occluder::Blockers::opaque));
+  EXPECT_FALSE(hides(Occluder::Blockers::all));
+}
+
 TEST(Occluder, ARayMeetsThePolygonThatLiesOver) {
   // Without the coverings Embree may find either. Here rays meet the rug inside its outline and the floor beside it,
   // for any order in the scene.
