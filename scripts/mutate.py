@@ -2,15 +2,16 @@
 """Runs the tool on damaged files of every kind it reads, and reports forbidden behavior.
 
 usage: scripts/mutate.py TOOL [--runs N] [--first N] [--seconds S] [--seed N] [--jobs N] [--kinds A,B,...]
-       [--commands A,B,...] [--keep FOLDER]
+       [--commands A,B,...] [--memory GB] [--keep FOLDER]
 
 Good files are damaged (bits turned, parts cut out, doubled or swapped, numbers replaced by hostile ones, words by
 others of the file, brackets piled up) and given to check, plan, solve, relight or render. A run is bad if a signal ends
 the tool; it takes over 20 s of the processor or never ends; its exit code is not documented, or 70, which
 stands for a defect; it fails without a message; a library writes to the terminal; it succeeds and prints a nan. The tool
-may be any build, also one with sanitizers. --commands check,plan tries the readers alone, in a fraction of the time. Run
-number k of a seed is always the same, so that many can be made in pieces, each from --first on. A line every 500 runs shows the progress. Bad inputs are kept in FOLDER (default:
-mutate_found).
+may be any build. --commands check,plan tries the readers alone, in a fraction of the time. --memory limits the address
+space (default: 4; 0: no limit, for sanitizers); IFC files are read by Node.js, which reserves more and has no limit. Run
+number k of a seed is always the same, so that many can be made in pieces, each from --first on. A line every 500 runs
+shows the progress. Bad inputs are kept in FOLDER (default: mutate_found).
 """
 import argparse
 import concurrent.futures
@@ -233,10 +234,14 @@ def fault_of(code, said, printed):
     return None if MESSAGE.search(said) else "no message"
 
 
-def run_one(tool, cases, kinds, seed, number, keep):
+def run_one(options, cases, kinds, number):
     """Run `number`: nothing when it is good, else its fault."""
+    seed = options.seed
     chance = random.Random(f"{seed} {number}")
     kind = kinds[number % len(kinds)]
+    limits = [f"--cpu={PATIENCE}"]
+    if options.memory > 0 and kind != "ifc":
+        limits.append(f"--as={options.memory * 10**9:.0f}")
     files, name, commands = chance.choice(cases[kind])
     words = chance.choice(commands)
     with tempfile.TemporaryDirectory(prefix="patchlight-mutate-") as folder:
@@ -245,16 +250,16 @@ def run_one(tool, cases, kinds, seed, number, keep):
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(damaged(data, chance) if file == name else data)
         try:
-            done = subprocess.run(["prlimit", f"--cpu={PATIENCE}", tool, *words, *([] if words[0] == "check" else ["--threads", "1"])],
-                                  cwd=folder, check=False, stdin=subprocess.DEVNULL, capture_output=True, timeout=WAITING,
-                                  env=ENVIRONMENT)
+            one_thread = [] if words[0] == "check" else ["--threads", "1"]
+            done = subprocess.run(["prlimit", *limits, options.tool, *words, *one_thread], cwd=folder, check=False,
+                                  stdin=subprocess.DEVNULL, capture_output=True, timeout=WAITING, env=ENVIRONMENT)
             fault = fault_of(done.returncode, done.stderr, done.stdout)
             said = done.stderr[-2000:].decode(errors="replace")
         except subprocess.TimeoutExpired:
             fault, said = f"no end after {WAITING} s", ""
         if fault is None:
             return None
-        place = keep / f"{kind}-{seed}-{number}"
+        place = options.keep / f"{kind}-{seed}-{number}"
         shutil.copytree(folder, place, dirs_exist_ok=True)
     return f"run {number}, {kind}: {fault}: {' '.join(words)}; kept in {place}\n{said}"
 
@@ -269,6 +274,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--kinds", type=lambda text: text.split(","))
     parser.add_argument("--commands", type=lambda text: text.split(","), default=["check", "plan", "solve", "relight", "render"])
+    parser.add_argument("--memory", type=float, default=4, metavar="GB")
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("mutate_found"))
     options = parser.parse_args()
     begin = time.monotonic()
@@ -286,7 +292,7 @@ def main():
                     number = next(numbers, None)
                     if number is None:
                         break
-                    pending.add(pool.submit(run_one, options.tool, cases, kinds, options.seed, number, options.keep))
+                    pending.add(pool.submit(run_one, options, cases, kinds, number))
                 if not pending:
                     break
                 done, pending = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_COMPLETED)
