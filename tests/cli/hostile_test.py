@@ -243,6 +243,14 @@ class HostileTest(ToolTest):
             self.assertIn(done.returncode, (0, MEMORY), (megabytes, done.stderr))
         self.assertTrue(codes)
 
+    def test_too_little_address_space_for_ifc(self):
+        """The message is not that of the library, and does not blame the file."""
+        good = pathlib.Path(__file__).parents[1] / "fuzz" / "corpus" / "ifc" / "room.ifc"
+        (self.folder / "room.ifc").write_bytes(good.read_bytes())
+        done = self.refused(INPUT, ["ulimit -v"], "check", "room.ifc",
+                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30)))
+        self.assertNotIn("Wasm", done.stderr)
+
     def test_a_name_that_is_taken(self):
         """Files already exist under the names of temporary files of this process."""
         script = ('import os, sys\n'

@@ -310,6 +310,8 @@ async function main() {
 // web-ifc and the module loader write to the console, which must contain only the lines of this script.
 for (const level of ['log', 'info', 'warn', 'error', 'debug']) console[level] = () => {};
 main().catch((error) => {
-  // Exceptions of WebAssembly have no message.
-  write({ refusal: `cannot be read: ${error?.message ?? 'the IFC library ends with an error, or needs more than its memory'}` });
+  const reason = /out of memory/i.test(error?.message)
+    ? 'the IFC library gets too little memory; it reserves 10 GB of address space (ulimit -v)'
+    : 'the IFC library ends with an error; the file may be damaged';
+  write({ refusal: `cannot be read: ${reason}` });
 });
