@@ -33,8 +33,8 @@ LAMPS = {1: "3,2,1", 2: "1,2,3"}
 
 def words(tool, lamp):
     return [tool, "solve", "room.obj", "-q", "--patches", "100", "--set", f"lamp.exitance={LAMPS[lamp]}", "-o", "out.vtp", "-o",
-            "out.ply", "--picture", "out.png", "--points", "spots.pts", "--points-output", "spots.csv", "--json",
-            "out.json", "--series", "out.pvd"]
+            "out.ply", "--picture", "out.png", "--size", "100x100", "--points", "spots.pts", "--points-output", "spots.csv",
+            "--json", "out.json", "--series", "out.pvd"]
 
 
 def check_series(folder):

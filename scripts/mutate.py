@@ -56,7 +56,7 @@ TILT=NONE
 EPW = ("LOCATION,Here,-,-,-,1,50.0,10.0,1.0,100.0\nDESIGN CONDITIONS,0\n" +
        "".join(f"2001,6,21,{hour},60,A,20,10,50,100000,1000,1400,300,{50 * hour},{20 * hour},700,150,100,900,180,2\n"
                for hour in range(8, 16)))
-POINTS = "# x y z nx ny nz\n0 0 0.5 0 0 1\n0.5,0.5,0.5,0,0,2\n-0.5 0.5 1 1 0 0 # side\n"
+POINTS = "# x y z nx ny nz\n0 0 0.5 0 0 1\n0.5,0.5,0.5,0,0,2\n-0.6 0.5 1 1 0 0 # side\n"
 SCENE = """unit = "m"
 up = "z"
 [[model]]
