@@ -395,7 +395,7 @@ DirectIrradiance straight_irradiance(const Estimator& estimator, std::size_t cou
                                      const EffortAt& effort_at, const Observer& observer) {
   const LightSampler& lights = estimator.lights;
   const Field none = Field::Zero(static_cast<Eigen::Index>(count), lights.lighting().bands);
-  DirectIrradiance direct{none, none};
+  DirectIrradiance direct{none, none, none};
   if (lights.without_faces().empty() && !lights.lighting().sky) return direct;
   parallel_for(count, Stage::direct_light, observer, [&](std::size_t k) {
     const auto [mean, variance] = estimator.at(receiver_at(k), k / estimator.options.alike, effort_at(k));
@@ -441,7 +441,7 @@ template <class Receivers>
 DirectIrradiance irradiance_of(const LightSampler& lights, const Receivers& receivers, const LightingOptions& options,
                                const Observer& observer) {
   const Field none = Field::Zero(static_cast<Eigen::Index>(receivers.size()), lights.lighting().bands);
-  DirectIrradiance direct{none, none};
+  DirectIrradiance direct{none, none, none};
   if (!options.only_in_mirrors) direct = straight_irradiance(lights, receivers, options, observer);
   if (lights.lighting().mirrors) add(direct, irradiance_in_mirrors(lights, receivers, options, observer));
   return direct;
@@ -452,6 +452,7 @@ DirectIrradiance irradiance_of(const LightSampler& lights, const Receivers& rece
 void add(DirectIrradiance& direct, const DirectIrradiance& more) {
   direct.irradiance += more.irradiance;
   direct.standard_error = (direct.standard_error.square() + more.standard_error.square()).sqrt();
+  direct.unfollowed += more.unfollowed;
 }
 
 DirectIrradiance direct_irradiance(const LightSampler& lights, const PatchMesh& mesh, const LightingOptions& options,

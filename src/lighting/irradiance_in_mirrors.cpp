@@ -116,12 +116,15 @@ std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<co
 
 // The sums over the places of each replicate. The shadow rays of all of them are traced together.
 OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const {
+  struct Arriving {
+    Eigen::Index replicate;
+    LightSample sample;
+  };
   const Field none = Field::Zero(places.empty() ? 0 : places.back().replicate + 1, lighting.bands);
   OverChains sums{none, none};
   for (const auto& [chain, wanted] : chains) {
     std::vector<Segment> segments;
-    std::vector<Spectrum> unoccluded;
-    std::vector<Eigen::Index> replicate;
+    std::vector<Arriving> unoccluded;
     for (const SampledPlace& place : places) {
       const MirrorSide& first = chain->mirrors.front();
       if (!(first.normal.dot(place.at.point - first.on_plane) > 0)) continue;
@@ -130,16 +133,16 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
         const LightSample sample = source->sample(image, {place.sample[2], place.sample[3]});
         if (!(sample.irradiance > 0)) continue;
         segments.push_back(segment_to(sample, place.at));
-        unoccluded.push_back(sample.irradiance * *sample.color);
-        replicate.push_back(place.replicate);
+        unoccluded.push_back({place.replicate, sample});
       }
     }
     if (segments.empty()) continue;
     const Field share = lighting.mirrors->paths.transmittance(*chain, lighting.paths, segments);
     for (std::size_t k = 0; k < segments.size(); ++k) {
-      const Spectrum arriving = unoccluded[k] * share.row(static_cast<Eigen::Index>(k));
-      sums.light.row(replicate[k]) += arriving;
-      sums.beyond.row(replicate[k]) += chain->beyond * arriving;
+      const auto& [replicate, sample] = unoccluded[k];
+      const auto arriving = sample.irradiance * *sample.color * share.row(static_cast<Eigen::Index>(k));
+      sums.light.row(replicate) += arriving;
+      sums.beyond.row(replicate) += chain->beyond * arriving;
     }
   }
   return sums;
@@ -236,7 +239,8 @@ DirectIrradiance in_mirrors_at(const LightSampler& lights, const MirrorReceivers
   const std::vector<WantedChain> chains = sampler.all_chains();
   const std::size_t count = all.count;
   const auto rows = static_cast<Eigen::Index>(count);
-  DirectIrradiance direct{Field::Zero(rows, lighting.bands), Field::Zero(rows, lighting.bands)};
+  const Field none = Field::Zero(rows, lighting.bands);
+  DirectIrradiance direct{none, none, none};
   const std::size_t groups = (count + receivers_at_once - 1) / receivers_at_once;
   parallel_for(groups, Stage::direct_light, observer, [&](std::size_t group) {
     const std::size_t begin = group * receivers_at_once;
@@ -253,6 +257,7 @@ DirectIrradiance in_mirrors_at(const LightSampler& lights, const MirrorReceivers
       const Spectrum bound = not_followed.colwise().mean();
       direct.irradiance.row(static_cast<Eigen::Index>(k)) = mean;
       direct.standard_error.row(static_cast<Eigen::Index>(k)) = (variance + bound.square()).sqrt();
+      direct.unfollowed.row(static_cast<Eigen::Index>(k)) = bound;
     }
   });
   return direct;

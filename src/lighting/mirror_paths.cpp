@@ -119,10 +119,11 @@ bool MirrorPaths::may_pass(const MirrorChain& chain, const Ball& receiver, const
 // light goes to from there.
 std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::span<const Segment> segments) const {
   std::vector<Way> found;
+  Way way{0, std::vector<Point>(chain.mirrors.size())};
   for (std::size_t k = 0; k < segments.size(); ++k) {
     Point image = chain.image * segments[k].from;
     Point onward = segments[k].to;
-    Way way{k, std::vector<Point>(chain.mirrors.size())};
+    way.segment = k;
     bool meets_all = true;
     for (std::size_t m = chain.mirrors.size(); m-- > 0 && meets_all;) {
       const MirrorSide& mirror = chain.mirrors[m];
@@ -135,7 +136,7 @@ std::vector<MirrorPaths::Way> MirrorPaths::ways(const MirrorChain& chain, std::s
       image += 2 * behind * mirror.normal;
       onward = way.places[m];
     }
-    if (meets_all) found.push_back(std::move(way));
+    if (meets_all) found.push_back(way);
   }
   return found;
 }

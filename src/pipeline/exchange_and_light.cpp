@@ -283,11 +283,13 @@ ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen:
   const RayLight& light = all.light;
   const Eigen::Map<const Eigen::VectorXd> area(mesh.area.data(), static_cast<Eigen::Index>(mesh.size()));
   LitProblem lit{problem_of(part.scene, mesh, area, plan.sides.emit_from_back, reflections_of(plan)),
-                 columns_of(light.lit.direct_standard_error, bands), light.lit.doublings};
+                 columns_of(light.lit.direct_standard_error, bands), light.lit.doublings,
+                 columns_of(light.lit.unfollowed, bands)};
   lit.problem.direct_irradiance = columns_of(light.lit.problem.direct_irradiance, bands);
   found.light = light_of(found.exchange, std::move(lit), mesh.size());
   found.light.in_mirrors = {columns_of(light.in_mirrors.irradiance, bands),
-                            columns_of(light.in_mirrors.standard_error, bands)};
+                            columns_of(light.in_mirrors.standard_error, bands),
+                            columns_of(light.in_mirrors.unfollowed, bands)};
   found.light.is_missed = light.is_missed;
   found.light.rays_per_patch = light.rays_per_patch;
   return found;

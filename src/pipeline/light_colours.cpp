@@ -228,7 +228,7 @@ SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& col
   SolvedMesh all = joined(run, colours, meshed, std::move(parts));
   const LitProblem& lit = all_bands.light.lit;
   if (cuts_locally(run, meshed.mesh.patches.size()) && lit.direct_standard_error.size() > 0)
-    all.light = {lit.problem.direct_irradiance, lit.direct_standard_error};
+    all.light = {lit.problem.direct_irradiance, lit.direct_standard_error, lit.unfollowed};
   if (all.interest.size() > 0) require_reflecting(run.scene, all.simulation.problem, all.interest);
   return all;
 }

@@ -77,7 +77,7 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   const LostShare& lost = exchange.rows.lost;
   RadiosityProblem& problem = light.lit.problem;
   if (cuts_locally(run, mesh.size()) && !run.is_part && light.lit.direct_standard_error.size() > 0)
-    light.as_found = {problem.direct_irradiance, light.lit.direct_standard_error};
+    light.as_found = {problem.direct_irradiance, light.lit.direct_standard_error, light.lit.unfollowed};
   problem.area = exchange.rows.area;
   problem.scattering = with_sheets(std::move(problem.scattering), run.scene, mesh, problem.area);
   light.lit = over_exposed_part(std::move(light.lit), mesh, lost);
@@ -95,7 +95,7 @@ RayTransportAndLight ray_light(const Run& run, const PatchMesh& mesh, ExchangeAn
   }
   light.in_mirrors = over_exposed_part(std::move(light.in_mirrors), mesh, lost, problem.area);
   if (light.in_mirrors.irradiance.size() > 0) {
-    auto& [irradiance, error] = light.in_mirrors;
+    auto& [irradiance, error, unfollowed] = light.in_mirrors;
     error = (error.square() + (irradiance.colwise() * relative).square()).sqrt();
   }
   return {std::move(exchange.rows), std::move(light)};

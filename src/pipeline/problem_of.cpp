@@ -49,7 +49,7 @@ DirectIrradiance direct_irradiance_as_planned(const Run& run, const Plan& plan, 
   // All light has the lamps' color, and nothing changes it on the way: all bands follow from one.
   const DirectIrradiance found = trace(run.world->lighting_in_one_band());
   const auto in_all = [&](const Field& field) { return Field(field.matrix() * plan.lamp_colour.matrix()); };
-  return {in_all(found.irradiance), in_all(found.standard_error)};
+  return {in_all(found.irradiance), in_all(found.standard_error), in_all(found.unfollowed)};
 }
 
 // Light that is partly known from the previous mesh. The rest is computed with the requested multiple of rays.
@@ -79,7 +79,9 @@ DirectIrradiance direct_irradiance_beside(const Known& known, const Run& run, co
       all.row(i) = is_known[i] != 0 ? before.row(known.light_place[i]) : now.row(next++);
     return all;
   };
-  return {joined(known.light->irradiance, found.irradiance), joined(known.light->standard_error, found.standard_error)};
+  const DirectIrradiance& light = *known.light;
+  return {joined(light.irradiance, found.irradiance), joined(light.standard_error, found.standard_error),
+          joined(light.unfollowed, found.unfollowed)};
 }
 
 }  // namespace
@@ -166,6 +168,7 @@ LitProblem lit_problem(const Run& run, const Plan& plan, const PatchMesh& mesh, 
   DirectIrradiance direct = direct_irradiance_beside(known, run, plan, mesh, lighting_options(plan, mesh));
   lit.problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
+  lit.unfollowed = std::move(direct.unfollowed);
   lit.doublings = known.more_rays.to_lights;
   return lit;
 }
@@ -174,18 +177,22 @@ DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mes
                                    const Eigen::VectorXd& exposed_area, std::span<const std::uint8_t> doublings) {
   if (direct.irradiance.size() == 0) return direct;
   const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exposed_area);
-  direct.irradiance.colwise() *= factor;
-  direct.standard_error.colwise() *= factor;
-  direct.standard_error = with_errors_around(mesh, exposed_area, direct.standard_error, doublings);
+  for (Field* const field : {&direct.irradiance, &direct.standard_error, &direct.unfollowed})
+    field->colwise() *= factor;
+  const Field bound = direct.unfollowed.square();
+  const Field by_samples = (direct.standard_error.square() - bound).max(0.0).sqrt();
+  direct.standard_error = (with_errors_around(mesh, exposed_area, by_samples, doublings).square() + bound).sqrt();
   return direct;
 }
 
 LitProblem over_exposed_part(LitProblem lit, const PatchMesh& mesh, const LostShare& lost) {
   RadiosityProblem& problem = lit.problem;
-  DirectIrradiance direct{std::move(problem.direct_irradiance), std::move(lit.direct_standard_error)};
+  DirectIrradiance direct{std::move(problem.direct_irradiance), std::move(lit.direct_standard_error),
+                          std::move(lit.unfollowed)};
   direct = over_exposed_part(std::move(direct), mesh, lost, problem.area, lit.doublings);
   problem.direct_irradiance = std::move(direct.irradiance);
   lit.direct_standard_error = std::move(direct.standard_error);
+  lit.unfollowed = std::move(direct.unfollowed);
   return lit;
 }
 

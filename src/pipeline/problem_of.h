@@ -45,6 +45,7 @@ struct LitProblem {
   RadiosityProblem problem;
   Field direct_standard_error;               ///< of RadiosityProblem::direct_irradiance, W/m^2; empty with it
   std::vector<std::uint8_t> doublings = {};  ///< MoreRays::to_lights
+  Field unfollowed = {};                     ///< DirectIrradiance::unfollowed, W/m^2
 };
 
 /// Above these numbers of patches, each patch gets fewer rays: smoothing over nearby patches reduces the noise.

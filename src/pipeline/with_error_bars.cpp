@@ -211,10 +211,16 @@ struct BarsOfRays {
                          // meshes may follow
 };
 
+// Errors by light over mirrors that is not followed, which no more rays reduce; empty where there are no mirrors.
+struct UnfollowedErrors {
+  Field of_lights;  // luminaires, sun and sky
+  Field of_rows;    // separate emitters
+};
+
 // The effects of refinement: of parents by the light of their patches, and by errors in gaps, which are their own; none
 // by noise, which more rays take away.
 SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen,
-                        const BarsOfRays& bars) {
+                        const BarsOfRays& bars, const UnfollowedErrors& unfollowed) {
   const Simulation& simulation = result.simulation;
   const SolvedProblem solved{simulation.problem, simulation.solution};
   const auto relative = [&](const Field& bar) {
@@ -236,22 +242,28 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
   result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
   const auto of_each = [&](const Field& bar) { return squares_of_patches(solved, bar, weight); };
-  result.row_noise = of_each(simulation.ray_standard_error);
-  result.noise_bar = relative(simulation.ray_standard_error);
+  Field of_rows = simulation.ray_standard_error.square();
+  if (unfollowed.of_rows.size() > 0) of_rows -= unfollowed.of_rows.square();
   const Field& of_lights = simulation.direct_standard_error;
-  if (of_lights.size() == 0) return result;
-  // The exposed share of a patch is an error of rows.
-  const Field by_exposure = simulation.problem.direct_irradiance.colwise() * exposure_errors(simulation.transport.lost);
-  const Field by_rays = (of_lights.square() - by_exposure.square()).max(0.0).sqrt();
-  result.light_noise = of_each(by_rays);
-  result.light_bar = relative(by_rays);
-  result.row_noise = (result.row_noise - result.light_noise).cwiseMax(0);
-  result.noise_bar = std::sqrt(std::max(0.0, std::pow(result.noise_bar, 2) - std::pow(result.light_bar, 2)));
+  if (of_lights.size() > 0) {
+    // The exposed share of a patch is an error of rows.
+    const Field by_exposure =
+        simulation.problem.direct_irradiance.colwise() * exposure_errors(simulation.transport.lost);
+    const Field bound = unfollowed.of_lights.square();
+    const Field by_rays = (of_lights.square() - by_exposure.square() - bound).max(0.0);
+    of_rows -= by_rays + bound;
+    result.light_noise = of_each(by_rays.sqrt());
+    result.light_bar = relative(by_rays.sqrt());
+  }
+  of_rows = of_rows.max(0.0).sqrt();
+  result.row_noise = of_each(of_rows);
+  result.noise_bar = relative(of_rows);
   return result;
 }
 
 // Rows of rays have their own error estimate; rays at quarters of patches find the part of the mesh.
-SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPockets& transport) {
+SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPockets& transport,
+                             const UnfollowedErrors& unfollowed) {
   // Known rows allow no further ray.
   if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
@@ -279,7 +291,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .display = unseen.display};
   if (!has_parents || !cuts_locally(run, simulation.mesh.size())) return result;
   if (!refines(run.plan.accuracy)) bars.in_narrow_gaps = in_gaps(most_local_cuts);
-  return with_effects(std::move(result), weight, unseen, bars);
+  return with_effects(std::move(result), weight, unseen, bars, unfollowed);
 }
 
 }  // namespace
@@ -292,10 +304,12 @@ double share_of_emitters(const RadiosityProblem& problem) {
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
   if (transport.rays) {
     // The solution has all of the light but the rows.
-    result.light = std::move(transport.light->as_found);
+    RayLight& light = *transport.light;
+    result.light = std::move(light.as_found);
+    const UnfollowedErrors unfollowed{std::move(light.lit.unfollowed), std::move(light.in_mirrors.unfollowed)};
     transport.light.reset();
     transport.facts = {};
-    return with_bars_of_rays(run, std::move(result), *transport.rays);
+    return with_bars_of_rays(run, std::move(result), *transport.rays, unfollowed);
   }
   if (!run.plan.accuracy.error_bars) return result;
   result.raw = std::move(transport.assembly);

@@ -107,10 +107,10 @@ GatheredIrradiance irradiance_at(const std::vector<Sensor>& sensors, const Simul
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
   if (!is_known) gathered.errors.solver.setConstant(std::nan(""));
   if (has_point_or_daylight(world.sensor_scene()) || lighting.mirrors) {
-    const auto [irradiance, standard_error] = direct_irradiance({lighting, faces_of(world.sensor_scene(), lamps)},
-                                                                points_of(sensors), {.seed = seed}, observer);
-    gathered.irradiance += irradiance;
-    gathered.errors.rays = (gathered.errors.rays.square() + standard_error.square()).sqrt();
+    const DirectIrradiance direct = direct_irradiance({lighting, faces_of(world.sensor_scene(), lamps)},
+                                                      points_of(sensors), {.seed = seed}, observer);
+    gathered.irradiance += direct.irradiance;
+    gathered.errors.rays = (gathered.errors.rays.square() + direct.standard_error.square()).sqrt();
   }
   return gathered;
 }

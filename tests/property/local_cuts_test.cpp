@@ -162,6 +162,38 @@ TEST(LocalCuts, AreLeftOutWhereMemoryIsShort) {
   EXPECT_NE(note.find("(resources.memory)"), std::string::npos) << note;
 }
 
+// A lamp between two walls of 2 x 2 m that face each other, each of a hundred mirrors.
+Scene lamp_between_facets() {
+  Material mirror = grey(0);
+  mirror.specular_reflectance = Spectrum::Constant(1, 0.9);
+  Scene scene = empty_scene({grey(0.5), mirror});
+  scene = with_quad(std::move(scene), {Point(0, 0, 0), Point(2, 0, 0), Point(2, 2, 0), Point(0, 2, 0)});
+  constexpr double edge = 0.2;
+  for (int k = 0; k < 100; ++k) {
+    const double y = edge * (k % 10), z = edge * (k / 10);
+    const Quad facet{Point(0, y, z), Point(0, y + edge, z), Point(0, y + edge, z + edge), Point(0, y, z + edge)};
+    scene = with_quad(std::move(scene), facet, 1);
+    Quad other{facet[3], facet[2], facet[1], facet[0]};
+    for (Point& corner : other) corner.x() = 2;
+    scene = with_quad(std::move(scene), other, 1);
+  }
+  Luminaire lamp;
+  lamp.position = Point(0.7, 0.9, 1.1);
+  lamp.light = PointLight{Spectrum::Constant(1, 10.0)};
+  scene.luminaires = {lamp};
+  return scene;
+}
+
+// More rays do not reduce the error by chains of mirrors that are too many to be followed. A second mesh would be made for
+// an error of more than 2 %.
+TEST(LocalCuts, AreNotMadeForLightThatIsNotFollowed) {
+  Request request = by_rays(true);
+  request.mesh.patches = 300;
+  const Simulation s = simulate(lamp_between_facets(), request);
+  ASSERT_EQ(s.accuracy.size(), 1U);
+  EXPECT_GT(s.accuracy[0].form_factor, 0.025);
+}
+
 // The solver adds meshes until it reaches an accuracy. Each mesh has at most four times the patches of the last, plus a
 // quarter for balance. The flux under the board is within three times the stated error, as it is a hundredth of the
 // light and has a larger error than most.
