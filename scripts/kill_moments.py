@@ -6,8 +6,9 @@ usage: scripts/kill_moments.py TOOL [--signal KILL|TERM|INT|HUP] [--moments N] [
 After each KILL every file must be the older one or the whole new one; so must the series, whose .pvd names files that are
 there. All must be of one run, or the kill fell between the first and the last of the renames, which is counted: then the
 new ones are those that are renamed first. The other signals stop a run at the next step: it returns 128 plus the number of
-the signal, or 0 if it has ended before; all files are whole, and views that were not ready are the older ones. A new
-solution of a stopped run can be rendered. After one more run no temporary file is left.
+the signal, or 0 if it has ended before; all files are whole, and views that were not ready are the older ones. A program
+that is still being loaded ends by the signal itself, and all files are the older ones. A new solution of a stopped run
+can be rendered. After one more run no temporary file is left.
 """
 import argparse
 import json
@@ -139,15 +140,17 @@ def main():
                 time.sleep(chance.uniform(0, 1.2 * writing))
             process.send_signal(sent)
             code = process.wait()
-            if code not in (0, stopped):
+            if code not in (0, stopped, -sent):
                 faults.append(f"moment {killed + 1}: exit code {code}")
                 break
-            if code != stopped:
+            if code == 0:
                 ended, now = ended + 1, wanted  # faster than was thought
                 continue
             killed += 1
             try:
                 found = renamed(folder, before, whole[wanted], sent != signal.SIGKILL)
+                if code == -sent != stopped and any(found):
+                    raise AssertionError("the signal has ended a run that wrote files")
                 if sent != signal.SIGKILL and found[0]:
                     require_usable(options.tool, folder, wanted)
                     usable += 1
