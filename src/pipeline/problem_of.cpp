@@ -179,9 +179,8 @@ DirectIrradiance over_exposed_part(DirectIrradiance direct, const PatchMesh& mes
   const Eigen::ArrayXd factor = over_exposed_part(mesh, lost, exposed_area);
   for (Field* const field : {&direct.irradiance, &direct.standard_error, &direct.unfollowed})
     field->colwise() *= factor;
-  const Field bound = direct.unfollowed.square();
-  const Field by_samples = (direct.standard_error.square() - bound).max(0.0).sqrt();
-  direct.standard_error = (with_errors_around(mesh, exposed_area, by_samples, doublings).square() + bound).sqrt();
+  for (Field* const error : {&direct.standard_error, &direct.unfollowed})
+    *error = with_errors_around(mesh, exposed_area, *error, doublings);
   return direct;
 }
 

@@ -184,8 +184,8 @@ Scene lamp_between_facets() {
   return scene;
 }
 
-// More rays do not reduce the error by chains of mirrors that are too many to be followed. A second mesh would be made for
-// an error of more than 2 %.
+// More rays do not reduce the error by chains of mirrors that are too many to be followed. A second mesh would be made
+// for an error of more than 2 %.
 TEST(LocalCuts, AreNotMadeForLightThatIsNotFollowed) {
   Request request = by_rays(true);
   request.mesh.patches = 300;
