@@ -109,6 +109,8 @@ def main():
     chance = random.Random(options.seed)
     sent = signal.Signals[f"SIG{options.signal}"]
     stopped = -sent if sent == signal.SIGKILL else 128 + sent
+    if signal.getsignal(sent) == signal.SIG_IGN:
+        signal.signal(sent, signal.SIG_DFL)  # nohup and background jobs of scripts ignore it, and so would the tool
     counts = {"old": 0, "new": 0, "between": 0}
     faults = []
     with tempfile.TemporaryDirectory(prefix="patchlight-kill-") as place:
