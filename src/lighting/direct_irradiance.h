@@ -37,8 +37,8 @@ struct DirectIrradiance {
                          ///< sampled. Where n rays to a light without extent, or from a point
                          ///< to a ball, all find the same: 3 / n of its light without shadows. It leaves out holes
                          ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
-  Field unfollowed;  ///< the part of the standard error that more samples do not reduce: the bound of the light over
-                     ///< mirrors that is not followed
+  Field unfollowed = {};  ///< the part of the standard error that more samples do not reduce: the bound of the light
+                          ///< over mirrors that is not followed; empty: none
 };
 
 /// Adds more light on the same patches or points, with independent errors.

@@ -21,7 +21,7 @@ enum class AimFor : std::uint8_t { patch, points };
 /// any alike: so they find slits that are darker than windows which the receiver does not see. Rays are not aimed at
 /// holes alone where a few rays see much of the sky without. Neither are they for a patch where a few see no sky
 /// through the holes, which may be hidden. A point would so miss the visible rest of a window behind a table's leg,
-/// with no error.
+/// with no error. A point aims at no opening that a single polygon surely hides.
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what);
 
 /// The openings through which rays have seen the sky.

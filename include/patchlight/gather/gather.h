@@ -61,8 +61,8 @@ struct GatheredIrradiance {
 /// or any number of radiosities if no clear face or mirror has a color.
 /// - Bright patches: their radiosity exceeds twice the irradiance that a few first rays find at the sensor. Each
 ///   contributes its closed-form form factor times its visible fraction by shadow rays. The number of rays depends on
-///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. If there are very
-///   many, some are chosen at random.
+///   its unoccluded light, not on hits, so the estimate keeps all light through narrow openings. Patches that a single
+///   polygon surely hides get none. If there are very many, some are chosen at random.
 /// - All others: by rays over the hemisphere, distributed as the cosine. They continue through clear faces and mirrors.
 ///   Bright patches count in mirrors only.
 /// In a mesh of at most rays / least_rays patches all count as bright, so that sensors without occluders are exact.
