@@ -327,8 +327,8 @@ std::vector<ChosenSource> chosen_sources(const Sources& found, const Spectrum& l
 std::vector<SeenPatch> add_bright_patches(const Gather& gather, const Sensor& sensor, const Sources& sources,
                                           const Spectrum& limit, double times, std::uint32_t stage, Reading& reading,
                                           ErrorsOfPatches& errors) {
-  const std::vector<ChosenSource> chosen =
-      chosen_sources(sources, limit, gather, times, key_of(sensor, gather.occluder.frame(), gather.options.seed, stage));
+  const std::vector<ChosenSource> chosen = chosen_sources(
+      sources, limit, gather, times, key_of(sensor, gather.occluder.frame(), gather.options.seed, stage));
   const std::vector<VisibleShare> shares = gather.shadow_rays.visible_shares(sensor, chosen, stage);
   const Eigen::Index bands = reading.mean.size();
   Spectrum heaviest = Spectrum::Zero(bands);

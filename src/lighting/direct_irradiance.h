@@ -32,11 +32,11 @@ struct LightingOptions {
 /// Irradiance by light that does not come from patches, W/m^2: one row per patch or point, one column per band.
 struct DirectIrradiance {
   Field irradiance;
-  Field standard_error;  ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
-                         ///< eight; as large as the irradiance where there is one sample alone; 0 where nothing is
-                         ///< sampled. Where n rays to a light without extent, or from a point
-                         ///< to a ball, all find the same: 3 / n of its light without shadows. It leaves out holes
-                         ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
+  Field standard_error;   ///< from four independent scrambles of the samples, at points sixteen, over mirrors two to
+                          ///< eight; as large as the irradiance where there is one sample alone; 0 where nothing is
+                          ///< sampled. Where n rays to a light without extent, or from a point
+                          ///< to a ball, all find the same: 3 / n of its light without shadows. It leaves out holes
+                          ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
   Field unfollowed = {};  ///< the part of the standard error that more samples do not reduce: the bound of the light
                           ///< over mirrors that is not followed; empty: none
 };

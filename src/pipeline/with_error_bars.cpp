@@ -220,12 +220,8 @@ struct UnfollowedErrors {
 // The effects of refinement: of parents by the light of their patches, and by errors in gaps, which are their own; none
 // by noise, which more rays take away.
 SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const UnseenDifferences& unseen,
-                        const BarsOfRays& bars, const UnfollowedErrors& unfollowed) {
-  const Simulation& simulation = result.simulation;
-  const SolvedProblem solved{simulation.problem, simulation.solution};
-  const auto relative = [&](const Field& bar) {
-    return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
-  };
+                        const BarsOfRays& bars) {
+  const SolvedProblem solved{result.simulation.problem, result.simulation.solution};
   const auto is_of_gap = bars.in_gaps > bars.of_light;
   const Field of_light = is_of_gap.select(0.0, bars.of_light);
   const Field of_gaps = is_of_gap.select(bars.in_gaps, 0.0);
@@ -241,6 +237,16 @@ SolvedMesh with_effects(SolvedMesh result, const Eigen::VectorXd& weight, const 
     result.effects += in_gaps;
   result.share_cuts_mend = all > 0 ? result.effects.sum() / all : 0;
   result.noise = Eigen::VectorXd::Zero(result.effects.size());
+  return result;
+}
+
+// The errors by rays of rows and to lights, which more rays reduce.
+SolvedMesh with_noise(SolvedMesh result, const Eigen::VectorXd& weight, const UnfollowedErrors& unfollowed) {
+  const Simulation& simulation = result.simulation;
+  const SolvedProblem solved{simulation.problem, simulation.solution};
+  const auto relative = [&](const Field& bar) {
+    return relative_bar(bar, simulation.problem, simulation.solution, result.interest);
+  };
   const auto of_each = [&](const Field& bar) { return squares_of_patches(solved, bar, weight); };
   Field of_rows = simulation.ray_standard_error.square();
   if (unfollowed.of_rows.size() > 0) of_rows -= unfollowed.of_rows.square();
@@ -291,26 +297,11 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
                            .display = unseen.display};
   if (!has_parents || !cuts_locally(run, simulation.mesh.size())) return result;
   if (!refines(run.plan.accuracy)) bars.in_narrow_gaps = in_gaps(most_local_cuts);
-  return with_effects(std::move(result), weight, unseen, bars, unfollowed);
+  return with_noise(with_effects(std::move(result), weight, unseen, bars), weight, unfollowed);
 }
 
-}  // namespace
-
-double share_of_emitters(const RadiosityProblem& problem) {
-  return static_cast<double>((problem.exitance > 0).rowwise().any().count()) /
-         static_cast<double>(problem.exitance.rows());
-}
-
-SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
-  if (transport.rays) {
-    // The solution has all of the light but the rows.
-    RayLight& light = *transport.light;
-    result.light = std::move(light.as_found);
-    const UnfollowedErrors unfollowed{std::move(light.lit.unfollowed), std::move(light.in_mirrors.unfollowed)};
-    transport.light.reset();
-    transport.facts = {};
-    return with_bars_of_rays(run, std::move(result), *transport.rays, unfollowed);
-  }
+// Pairs have errors of their entries.
+SolvedMesh with_bars_of_pairs(const Run& run, SolvedMesh result, MeshTransport transport) {
   if (!run.plan.accuracy.error_bars) return result;
   result.raw = std::move(transport.assembly);
   const RowTransport& rows = *transport.rows;
@@ -354,6 +345,26 @@ SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport tran
   result.noise_bar = relative_bar(sampled, simulation.problem, simulation.solution, result.interest);
   result.noise = noise_of_parents(errors, result.mesh, solved, weight);
   return result;
+}
+
+}  // namespace
+
+double share_of_emitters(const RadiosityProblem& problem) {
+  return static_cast<double>((problem.exitance > 0).rowwise().any().count()) /
+         static_cast<double>(problem.exitance.rows());
+}
+
+SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
+  if (transport.rays) {
+    // The solution has all of the light but the rows.
+    RayLight& light = *transport.light;
+    result.light = std::move(light.as_found);
+    const UnfollowedErrors unfollowed{std::move(light.lit.unfollowed), std::move(light.in_mirrors.unfollowed)};
+    transport.light.reset();
+    transport.facts = {};
+    return with_bars_of_rays(run, std::move(result), *transport.rays, unfollowed);
+  }
+  return with_bars_of_pairs(run, std::move(result), std::move(transport));
 }
 
 }  // namespace patchlight

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> on_convex_hull(const Scene& scene);
 /// The places of polygons that another polygon covers, in recentered coordinates.
 struct CoveredPlaces {
   Coverings coverings;
-  std::vector<FlatPolygon> polygons;      ///< of the scene
+  std::vector<FlatPolygon> polygons;       ///< of the scene
   std::vector<Eigen::AlignedBox3f> boxes;  ///< around them, a little larger: few bytes that exclude most polygons
 
   bool any() const { return !coverings.over.empty(); }

@@ -268,7 +268,8 @@ TEST(GatherIrradiance, OfManyBrightPatchesIsThatOfAll) {
 
 TEST(GatherIrradiance, OfBrightPatchesThatOneWallHidesIsZeroWithoutError) {
   // The upper patches lie before the sensor, but the board hides each of them.
-  const Scene scene = with_quad(cube_room(0, 0), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5), Point(0, 1, 0.5)});
+  const Scene scene =
+      with_quad(cube_room(0, 0), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5), Point(0, 1, 0.5)});
   const PatchMesh mesh = fronts(scene, 0.025);
   Field radiosity = Field::Zero(mesh.size(), 1);
   for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() > 0.55 ? 1 : 0;

@@ -108,7 +108,8 @@ TEST(Occluder, AWallWithAPaneDrawnOnItHidesNothingForSure) {
   EXPECT_TRUE(hides(Occluder::Blockers::all));
   scene.materials.push_back(grey(0.1));
   scene.materials.back().transmittance = Spectrum::Constant(1, 0.8);
-  scene = with_quad(std::move(scene), {Point(1, 0.5, 0.5), Point(1, 1.5, 0.5), Point(1, 1.5, 1.5), Point(1, 0.5, 1.5)}, 1);
+  scene =
+      with_quad(std::move(scene), {Point(1, 0.5, 0.5), Point(1, 1.5, 0.5), Point(1, 1.5, 1.5), Point(1, 0.5, 1.5)}, 1);
   const Occluder sees(scene, Occluder::Blockers::all, find_coverings(scene, kept_sides(scene, Sides::both)));
   EXPECT_GT(sees.transmittance(std::vector<Segment>{{left[0], right[0]}})[0], 0);
   EXPECT_FALSE(hides(Occluder::Blockers::opaque));
