@@ -204,19 +204,21 @@ namespace {
 // The largest error of a propagated error, as a share of its reflected part.
 constexpr double bar_tolerance = 0.05;
 
-// The largest residual where the error has no bound.
+// The largest residual, relative to the first, for a transport that is not reciprocal.
 constexpr double residual_tolerance = 0.02;
 
 // The share that solved bands leave out of those that they span: the others are combined, and checked.
 constexpr double left_out = 0.3;
 
-// Several irradiances are followed together, in fields of up to 32 MB: one pass over the rows serves them all.
-constexpr Eigen::Index values_at_once = 1 << 22;
+// Several irradiances are followed together, unless they are larger than 16 MB: one pass over the rows serves them all.
+// The solver holds about a dozen fields of that size.
+constexpr Eigen::Index values_at_once = 1 << 21;
 
 Solution solution_of(const TransportOperator& transport, const RadiosityProblem& problem,
                      std::optional<double> largest_row_sum) {
-  // Only a reciprocal transport has a bound that is cheap to find. The residual of others is relative to that of the
-  // source, R F n, so that it resolves light which is even over a room.
+  // Only a reciprocal transport has a bound that is cheap to find. The residual of others is relative to the first one,
+  // the light that one reflection adds: its noise is less than that of the source, so that light which is even over a
+  // room stands out.
   const bool has_bound = transport.is_reciprocal();
   if (!has_bound) largest_row_sum = std::numeric_limits<double>::infinity();
   // Few directions: by a million patches these take most of the memory.
@@ -359,7 +361,8 @@ std::vector<Field> followed(const TransportOperator& transport, const RadiosityP
                             std::vector<Field> irradiances) {
   if (irradiances.empty()) return {};
   const Eigen::Index bands = irradiances.front().cols();
-  const auto at_once = static_cast<std::size_t>(std::max<Eigen::Index>(1, values_at_once / irradiances.front().size()));
+  const Eigen::Index size = std::max<Eigen::Index>(1, irradiances.front().size());
+  const auto at_once = static_cast<std::size_t>(std::max<Eigen::Index>(1, values_at_once / size));
   // Many bands are combinations of a few of them.
   const std::size_t most = bands > few_bands ? 1 : at_once;
   for (std::size_t first = 0; first < irradiances.size(); first += most) {

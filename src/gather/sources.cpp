@@ -90,10 +90,10 @@ Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldV
     }
     if (mesh.normal[j].dot(sensor.point - mesh.centroid[j]) <= tolerance) continue;
     std::vector<Point> outline = outline_above_horizon(mesh, j, sensor);
-    if (outline.empty() || occluder.hides(std::span(&sensor.point, 1), outline, std::span(&mesh.polygon[j], 1)))
-      continue;
+    if (outline.empty()) continue;
     const double form_factor = point_to_polygon(sensor.point, sensor.normal, outline);
     if (!(form_factor > 0)) continue;
+    if (occluder.hides(std::span(&sensor.point, 1), outline, std::span(&mesh.polygon[j], 1))) continue;
     found.unoccluded += form_factor * radiosity.row(j);
     found.bright.push_back({j, std::move(outline), form_factor});
   }

@@ -35,7 +35,8 @@ struct Sources {
 };
 
 /// Finds the patches above `limit` that a sensor may see: sensor and patch lie before each other, and no single polygon
-/// surely hides the patch. No side of a polygon on which a sensor lies counts. O(patches).
+/// surely hides the patch. No side of a polygon on which a sensor lies counts. O(patches), with one or
+/// two rays for each bright patch before the sensor.
 Sources sources_before(const Sensor& sensor, const PatchMesh& mesh, const FieldView& radiosity, const Spectrum& limit,
                        const Occluder& occluder);
 

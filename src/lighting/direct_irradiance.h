@@ -38,7 +38,7 @@ struct DirectIrradiance {
                           ///< to a ball, all find the same: 3 / n of its light without shadows. It leaves out holes
                           ///< that all rays of a patch to a ball or to the sky miss, smaller than one ray's share
   Field unfollowed = {};  ///< the part of the standard error that more samples do not reduce: the bound of the light
-                          ///< over mirrors that is not followed; empty: none
+                          ///< over mirrors that is not followed, 0 without mirrors
 };
 
 /// Adds more light on the same patches or points, with independent errors.

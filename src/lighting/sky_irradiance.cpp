@@ -155,9 +155,11 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
     const double square = (opening.centre - at.point).squaredNorm();
     const bool is_own = opening.polygon != no_polygon && opening.polygon == at.polygon;
     const bool is_before = rises_above(opening, at.point, at.normal, tolerance_of_shapes * std::sqrt(square));
-    // At a point rays that a single wall blocks would count as light that they may have missed.
-    const bool is_hidden = what == AimFor::points && is_before && !is_own &&
-                           lighting.paths.hides(std::span(&at.point, 1), corners_of(opening));
+    // At a point rays that a single wall blocks would count as light that they may have missed. It has to block them
+    // from all of a patch whose points share the aim.
+    const std::span<const Point> places = receiver.is_point() ? std::span(&at.point, 1) : std::span(receiver.corners);
+    const bool is_hidden =
+        what == AimFor::points && is_before && !is_own && lighting.paths.hides(places, corners_of(opening));
     const double weight = is_before && !is_own && !is_hidden ? apparent_size(opening, at.point) : 0;
     aim.probabilities.push_back(weight);
     aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);

@@ -211,10 +211,10 @@ struct BarsOfRays {
                          // meshes may follow
 };
 
-// Errors by light over mirrors that is not followed, which no more rays reduce; empty where there are no mirrors.
+// Errors by light over mirrors that is not followed, which no more rays reduce.
 struct UnfollowedErrors {
   Field of_lights;  // luminaires, sun and sky
-  Field of_rows;    // separate emitters
+  Field of_rows;    // separate emitters; empty where there are none
 };
 
 // The effects of refinement: of parents by the light of their patches, and by errors in gaps, which are their own; none
@@ -255,7 +255,7 @@ SolvedMesh with_noise(SolvedMesh result, const Eigen::VectorXd& weight, const Un
     // The exposed share of a patch is an error of rows.
     const Field by_exposure =
         simulation.problem.direct_irradiance.colwise() * exposure_errors(simulation.transport.lost);
-    const Field bound = unfollowed.of_lights.square();
+    const Field bound = unfollowed.of_lights.square().min(of_lights.square());
     const Field by_rays = (of_lights.square() - by_exposure.square() - bound).max(0.0);
     of_rows -= by_rays + bound;
     result.light_noise = of_each(by_rays.sqrt());

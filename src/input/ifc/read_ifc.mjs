@@ -310,7 +310,7 @@ async function main() {
 // web-ifc and the module loader write to the console, which must contain only the lines of this script.
 for (const level of ['log', 'info', 'warn', 'error', 'debug']) console[level] = () => {};
 main().catch((error) => {
-  const reason = /out of memory/i.test(error?.message)
+  const reason = /out of memory|could not allocate|allocation failed|\bOOM\b/i.test(error?.message)
     ? 'the IFC library gets too little memory; it reserves 10 GB of address space (ulimit -v)'
     : 'the IFC library ends with an error; the file may be damaged';
   write({ refusal: `cannot be read: ${reason}` });
