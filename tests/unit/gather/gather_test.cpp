@@ -241,15 +241,26 @@ TEST(GatherIrradiance, InAFineClosedRoomOfUnitRadiosityIsOne) {
   EXPECT_LT(found.errors.rays.maxCoeff(), 1e-12);
 }
 
+// A sensor on the floor of a box below a board of this depth. The patches above a height have a radiosity of 1.
+struct UnderABoard {
+  Scene scene;
+  PatchMesh mesh;
+  Field radiosity;
+  std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.01), Vector::UnitZ()}};
+
+  UnderABoard(double depth, double height)
+      : scene(with_quad(cube_room(0, 0),
+                        {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, depth, 0.5), Point(0, depth, 0.5)})),
+        mesh(fronts(scene, 0.025)),
+        radiosity(Field::Zero(mesh.size(), 1)) {
+    for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() > height ? 1 : 0;
+  }
+};
+
 // Of many bright patches some are chosen at random. Over 40 seeds the errors have no sign and the stated size, which is
 // known to 1 / sqrt(2 x 40) = 11 %.
 TEST(GatherIrradiance, OfManyBrightPatchesIsThatOfAll) {
-  const Scene scene =
-      with_quad(cube_room(0, 0), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 0.97, 0.5), Point(0, 0.97, 0.5)});
-  const PatchMesh mesh = fronts(scene, 0.025);
-  Field radiosity = Field::Zero(mesh.size(), 1);
-  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() > 0.51 ? 1 : 0;
-  const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.01), Vector::UnitZ()}};
+  const auto [scene, mesh, radiosity, sensors] = UnderABoard(0.97, 0.51);
   const Quad slit{Point(0, 0.97, 0.5), Point(0, 1, 0.5), Point(1, 1, 0.5), Point(1, 0.97, 0.5)};
   const double exact = point_to_polygon(sensors[0].point, sensors[0].normal, slit);
   const Occluder occluder(scene, Occluder::Blockers::all);
@@ -268,12 +279,7 @@ TEST(GatherIrradiance, OfManyBrightPatchesIsThatOfAll) {
 
 TEST(GatherIrradiance, OfBrightPatchesThatOneWallHidesIsZeroWithoutError) {
   // The upper patches lie before the sensor, but the board hides each of them.
-  const Scene scene =
-      with_quad(cube_room(0, 0), {Point(0, 0, 0.5), Point(1, 0, 0.5), Point(1, 1, 0.5), Point(0, 1, 0.5)});
-  const PatchMesh mesh = fronts(scene, 0.025);
-  Field radiosity = Field::Zero(mesh.size(), 1);
-  for (PatchIndex i = 0; i < mesh.size(); ++i) radiosity(i, 0) = mesh.centroid[i].z() > 0.55 ? 1 : 0;
-  const std::vector<Sensor> sensors{{Point(0.5, 0.5, 0.01), Vector::UnitZ()}};
+  const auto [scene, mesh, radiosity, sensors] = UnderABoard(1, 0.55);
   const Occluder occluder(scene, Occluder::Blockers::all);
   const GatheredIrradiance found = gather_irradiance(mesh, radiosity, occluder, sensors, {.slopes = false});
   EXPECT_EQ(found.irradiance(0, 0), 0);
