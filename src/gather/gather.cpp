@@ -459,12 +459,21 @@ Reading together(const Reading& first, const Reading& second) {
   return both;
 }
 
+// Rays have at most this share in the square of a sensor's error if others are larger than the wanted error.
+constexpr double smallest_share_of_rays = 0.02;
+
 // How many times as many rays would leave the wanted error: no number where nothing is seen yet of what may be seen.
-double wanted_factor(const Reading& reading, const GatherOptions& options) {
-  const Spectrum allowed = (options.wanted_error * reading.mean).square();
+double wanted_factor(const Reading& reading, std::size_t sensor, const GatherOptions& options) {
+  Spectrum light = reading.mean;
+  Spectrum others = reading.sampling + reading.mesh.square() + reading.unexplained + reading.hidden.square();
+  if (options.other != nullptr) {
+    light += options.other->mean.row(static_cast<Eigen::Index>(sensor));
+    others += options.other->standard_error.row(static_cast<Eigen::Index>(sensor)).square();
+  }
+  const Spectrum allowed = (options.wanted_error * light).square().max(smallest_share_of_rays * others);
   const Spectrum unseen =
       (reading.variance > 0).select(Spectrum::Constant(allowed.size(), std::numeric_limits<double>::infinity()), 1.0);
-  const Spectrum factor = (reading.mean > 0).select(reading.variance / allowed, unseen);
+  const Spectrum factor = (allowed > 0).select(reading.variance / allowed, unseen);
   return std::max(1.0, factor.maxCoeff());
 }
 
@@ -480,12 +489,12 @@ Spectrum limit_of_bright(const Gather& gather, const Sensor& sensor) {
   return bright_factor * sum;
 }
 
-Reading read_sensor(const Gather& gather, const Sensor& sensor) {
+Reading read_sensor(const Gather& gather, const Sensor& sensor, std::size_t number) {
   const Spectrum limit = limit_of_bright(gather, sensor);
   const Sources sources = sources_before(sensor, gather.light.mesh, gather.light.radiosity, limit, gather.occluder);
   Reading first = estimate(gather, sensor, sources, limit, 1, 0);
   const double more =
-      std::min((wanted_factor(first, gather.options) - 1) * first.rays, gather.options.most_rays - first.rays);
+      std::min((wanted_factor(first, number, gather.options) - 1) * first.rays, gather.options.most_rays - first.rays);
   if (!(more > first.rays / 2)) return first;
   return together(first, estimate(gather, sensor, sources, limit, more / first.rays, 1));
 }
@@ -527,7 +536,7 @@ GatheredIrradiance gather_irradiance(const PatchMesh& mesh, const FieldView& rad
   const Gather gather{light, shadow_rays, hemisphere, options, occluder};
   std::vector<Reading> readings(sensors.size());
   parallel_for(sensors.size(), Stage::gather, observer,
-               [&](std::size_t k) { readings[k] = read_sensor(gather, sensors[k]); });
+               [&](std::size_t k) { readings[k] = read_sensor(gather, sensors[k], k); });
   const Eigen::Index bands = radiosity.cols();
   const Field irradiance = column_of(readings, &Reading::mean, bands);
   return {irradiance,

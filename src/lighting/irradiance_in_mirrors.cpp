@@ -50,6 +50,10 @@ struct WantedChain {
   std::vector<const LightSource*> sources;
 };
 
+// The relative error of a sum over n chains with k samples each falls as 1 / sqrt(n k): beyond so many chains, each
+// takes fewer.
+constexpr std::size_t chains_with_all_samples = 32;
+
 // A place of the receiver, which samples lead on from it, and which replicate it belongs to.
 struct SampledPlace {
   SurfacePoint at;
@@ -68,6 +72,20 @@ struct OverChains {
   Field light;
   Field beyond;  // bound of the light of chains that are not followed
 };
+
+// The first places of each replicate.
+std::vector<SampledPlace> places_for_chains(std::span<const SampledPlace> places, std::size_t chains) {
+  const std::size_t times = std::bit_floor(std::max<std::size_t>(1, chains / chains_with_all_samples));
+  std::vector<SampledPlace> chosen;
+  for (auto first = places.begin(); first != places.end();) {
+    const auto last = std::find_if(first, places.end(), [&](const auto& p) { return p.replicate != first->replicate; });
+    const auto count =
+        static_cast<std::ptrdiff_t>(std::max<std::size_t>(1, static_cast<std::size_t>(last - first) / times));
+    chosen.insert(chosen.end(), first, first + count);
+    first = last;
+  }
+  return chosen;
+}
 
 struct MirrorSampler {
   const LightSampler& lights;
@@ -114,7 +132,7 @@ std::vector<WantedChain> MirrorSampler::chains_to(const Ball& ball, std::span<co
   return wanted;
 }
 
-// The sums over the places of each replicate. The shadow rays of all of them are traced together.
+// The means over the places of each replicate. The shadow rays of all of them are traced together.
 OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const {
   struct Arriving {
     Eigen::Index replicate;
@@ -145,6 +163,9 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
       sums.beyond.row(replicate) += chain->beyond * arriving;
     }
   }
+  Eigen::ArrayXd count = Eigen::ArrayXd::Zero(sums.light.rows());
+  for (const SampledPlace& place : places) count[place.replicate] += 1;
+  for (Field* const field : {&sums.light, &sums.beyond}) field->colwise() /= count;
   return sums;
 }
 
@@ -203,14 +224,13 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   const Spectrum unfollowed = lighting.mirrors->paths.unfollowed_irradiance(middle.point, middle.normal);
   if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), unfollowed};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
-  OverChains found = over_chains(chains, places);
+  OverChains found = over_chains(chains, places_for_chains(places, chains.size()));
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
+    const auto sky_key = hash({key, static_cast<std::uint64_t>(first->replicate)});
     found.light.row(first->replicate) +=
-        of_sky({first, last}, receiver.is_point(), hash({key, static_cast<std::uint64_t>(first->replicate)}));
-    for (Field* const field : {&found.light, &found.beyond})
-      field->row(first->replicate) /= static_cast<double>(last - first);
+        of_sky({first, last}, receiver.is_point(), sky_key) / static_cast<double>(last - first);
     first = last;
   }
   found.beyond.rowwise() += unfollowed;

@@ -191,10 +191,6 @@ void require_same_kinds(const RayExchange& known, const Run& run) {
                        "'); only colors may change\nhint: compute them again: patchlight form-factors MODEL -o FOLDER");
 }
 
-Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
-  return all.size() > 0 ? Field(all(Eigen::all, bands)) : Field(all.rows(), 0);
-}
-
 }  // namespace
 
 std::vector<EmitterSide> select_emitters(const Scene& scene, const PatchMesh& mesh, const RadiosityProblem& problem,
@@ -271,6 +267,10 @@ ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const Patc
     light.is_missed.push_back(now.density(i) > 0 && exchange.rows.directed[i] == 0 ? 1 : 0);
   light.rays_per_patch = static_cast<double>(exchange.rows.rays) / mesh.size();
   return {std::move(exchange), std::move(light)};
+}
+
+Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands) {
+  return all.size() > 0 ? Field(all(Eigen::all, bands)) : Field(all.rows(), 0);
 }
 
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,

@@ -54,6 +54,9 @@ struct ExchangeAndLight {
 /// that it does not know are sampled by shadow rays. \throws Canceled; InputError when these are too many.
 ExchangeAndLight exchange_and_light(const Run& run, const Plan& plan, const PatchMesh& mesh, const Known& known = {});
 
+/// Some of the bands of a field, which may be empty.
+Field columns_of(const Field& all, const std::vector<Eigen::Index>& bands);
+
 /// The same in some of the bands, by the run `part` that has only these. Rows are the same; the light that emitters
 /// send straight through clear faces is computed again.
 ExchangeAndLight in_colour(const ExchangeAndLight& all, const std::vector<Eigen::Index>& bands, const Run& part,

@@ -208,6 +208,9 @@ SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& col
                              StageClock& clock) {
   const ExchangeAndLight all_bands = exchange_and_light(run, meshed.plan, meshed.mesh.patches, meshed.known);
   clock.finish(Stage::form_factors);
+  QuarterLight light;
+  if (!run.with.ray_exchange) light = light_at_quarters(run, meshed.plan, meshed.mesh.patches);
+  clock.finish(Stage::error_bars);
   std::vector<SolvedMesh> parts;
   for (const LightColour& colour : colours) {
     const Plan plan = in_bands(run.plan, colour.bands);
@@ -222,7 +225,10 @@ SolvedMesh solved_in_colours(const Run& run, const std::vector<LightColour>& col
     clock.finish(Stage::closure);
     Simulation simulation = solved(part, in_part, transport, std::move(problem));
     clock.finish(Stage::solve);
-    parts.push_back(with_error_bars(part, {std::move(simulation), in_part.mesh}, std::move(transport)));
+    QuarterLight of_colour;
+    for (std::size_t half = 0; half < light.size(); ++half) of_colour[half] = columns_of(light[half], colour.bands);
+    parts.push_back(
+        with_error_bars(part, {std::move(simulation), in_part.mesh}, std::move(transport), std::move(of_colour)));
     clock.finish(Stage::error_bars);
   }
   SolvedMesh all = joined(run, colours, meshed, std::move(parts));

@@ -30,36 +30,29 @@
 namespace patchlight {
 namespace {
 
-// Direct light at the quarters of patches, in the needed bands. Only differences within a patch count. They are set to
-// 0 for patches below 1/64 of the mean area of the goal's patches. A limit of 1/16 would miss the frames and sills of
-// windows.
-std::array<Field, 2> direct_at_quarters(const Run& run, const Simulation& simulation, const SolvedBands& bands,
-                                        const QuarterLook& look) {
-  const PatchMesh& mesh = simulation.mesh;
-  const double least_area = mean_area_of_goal(mesh, simulation.plan.goal.get()) / 64;
-  std::vector<std::uint8_t> is_left_out;
-  for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
-  PatchMesh all = refine(mesh);
-  all.middles.clear();  // they belong to edges, on which light does not depend
-  const PatchMesh quarters = without_patches(all, is_left_out);
-  std::array<Field, 2> direct;
-  for (std::size_t half = 0; half < direct.size(); ++half) {
-    const Field found =
-        reduced(rough_direct_irradiance(run, simulation.plan, quarters, hash({look.seed, half}), look.rays), bands);
-    direct[half] = Field::Zero(static_cast<Eigen::Index>(is_left_out.size()), found.cols());
-    Eigen::Index next = 0;
-    for (std::size_t q = 0; q < is_left_out.size(); ++q)
-      if (is_left_out[q] == 0) direct[half].row(static_cast<Eigen::Index>(q)) = found.row(next++);
-  }
-  return direct;
+// Rays from each quarter of a patch: enough to see into gaps narrower than patches.
+constexpr int rays_from_quarters = 8;
+
+// Fewer rays where there are many patches, for the sake of time: the mean over the patches around reduces the noise.
+// More where rows have more, and up to 16 for an accuracy below 10 %, as the bars have to be smaller.
+int rays_of_quarters(const Plan& plan, PatchIndex patches) {
+  if (plan.assembly.storage != Storage::rays) return rays_from_quarters;
+  const int usual = patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
+  const std::optional<double>& asked = plan.accuracy.relative_error;
+  const double of_rows = static_cast<double>(plan.assembly.rays) / AssemblyOptions().rays;
+  const double of_accuracy = asked ? std::min(16.0 / usual, 0.1 / *asked) : 1;
+  return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 
 // unseen_differences() of a simulation in all bands, including those of luminaires, sun and sky. `needed` is the
-// simulation in the needed bands; `rays` start at each quarter of a patch in each half. Throws Canceled.
-UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const InNeededBands& needed,
-                                        const TransportOperator& transport, const Eigen::VectorXd& weight, int rays) {
-  QuarterLook look{.rays = rays, .seed = simulation.plan.assembly.seed};
-  if (has_point_or_daylight(run.scene)) look.direct = direct_at_quarters(run, simulation, needed.bands, look);
+// simulation in the needed bands. Throws Canceled.
+UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simulation, const QuarterLight& light,
+                                        const InNeededBands& needed, const TransportOperator& transport,
+                                        const Eigen::VectorXd& weight) {
+  QuarterLook look{.rays = rays_of_quarters(simulation.plan, simulation.mesh.size()),
+                   .seed = simulation.plan.assembly.seed};
+  for (std::size_t half = 0; half < light.size(); ++half)
+    if (light[half].size() > 0) look.direct[half] = reduced(light[half], needed.bands);
   const SolvedProblem solved = needed.solved();
   UnseenDifferences unseen =
       unseen_differences({simulation.mesh, run.world->between_patches(), simulation.transport.lost, solved}, transport,
@@ -67,9 +60,6 @@ UnseenDifferences unseen_differences_of(const Run& run, const Simulation& simula
   for (Field* field : {&unseen.error, &unseen.noise, &unseen.display}) *field = expanded(*field, needed.bands);
   return unseen;
 }
-
-// Rays from each quarter of a patch: enough to see into gaps narrower than patches.
-constexpr int rays_from_quarters = 8;
 
 // The same light on the parents, with the exchange areas of their patches summed up.
 Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mesh, const Plan& plan,
@@ -162,7 +152,8 @@ MeshBars mesh_bars(const Run& run, const SolvedMesh& result, const RowTransport&
   Field dark = dark_differences(simulation.transport.lost, solved);
   Field by_dark_parts = transport.apply(dark);
   return {mesh_errors(result.mesh, transport, solved, coarse),
-          unseen_differences_of(run, simulation, in_needed_bands(solved), transport, weight, rays_from_quarters),
+          unseen_differences_of(run, simulation, light_at_quarters(run, simulation.plan, simulation.mesh),
+                                in_needed_bands(solved), transport, weight),
           gap_errors(simulation.mesh, result.raw->exchange_areas, solved), std::move(dark), std::move(by_dark_parts)};
 }
 
@@ -190,17 +181,6 @@ Eigen::VectorXd effects_of(const SolvedMesh& result, const SolvedProblem& solved
   return shared_out(bars.from_larger, differences_from_parents(result.mesh, solved)) +
          shared_out(bars.by_dark_parts, bars.dark) + squares(bars.in_gaps) +
          scaled_to(squares(bars.unseen.error), unseen.cwiseMax(0.0));
-}
-
-// Fewer rays where there are many patches, for the sake of time: the mean over the patches around reduces the noise.
-// More where rows have more, and up to 16 for an accuracy below 10 %, as the bars have to be smaller.
-int rays_of_quarters(const Simulation& simulation) {
-  const PatchIndex patches = simulation.mesh.size();
-  const int usual = patches > very_many_patches ? 2 : patches > many_patches ? 4 : rays_from_quarters;
-  const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
-  const double of_rows = static_cast<double>(simulation.plan.assembly.rays) / AssemblyOptions().rays;
-  const double of_accuracy = asked ? std::min(16.0 / usual, 0.1 / *asked) : 1;
-  return usual * static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max({1.0, of_rows, of_accuracy}))));
 }
 
 // The errors by the size of the patches, by rows of rays.
@@ -269,7 +249,7 @@ SolvedMesh with_noise(SolvedMesh result, const Eigen::VectorXd& weight, const Un
 
 // Rows of rays have their own error estimate; rays at quarters of patches find the part of the mesh.
 SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPockets& transport,
-                             const UnfollowedErrors& unfollowed) {
+                             const QuarterLight& light, const UnfollowedErrors& unfollowed) {
   // Known rows allow no further ray.
   if (!simulates(run.plan, Effect::interreflection) || run.with.ray_exchange) return result;
   Simulation& simulation = result.simulation;
@@ -278,8 +258,7 @@ SolvedMesh with_bars_of_rays(const Run& run, SolvedMesh result, const RaysWithPo
   if (!run.is_part) require_reflecting(run.scene, simulation.problem, result.interest);
   const Eigen::VectorXd weight = weight_for(transport, solved.problem, result.interest);
   const InNeededBands needed = in_needed_bands(solved);
-  const UnseenDifferences unseen =
-      unseen_differences_of(run, simulation, needed, transport, weight, rays_of_quarters(simulation));
+  const UnseenDifferences unseen = unseen_differences_of(run, simulation, light, needed, transport, weight);
   const auto within_parents = [&] {
     return expanded(errors_within_parents(result.mesh, transport.rays(), needed.solved()), needed.bands);
   };
@@ -354,15 +333,38 @@ double share_of_emitters(const RadiosityProblem& problem) {
          static_cast<double>(problem.exitance.rows());
 }
 
-SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport) {
+QuarterLight light_at_quarters(const Run& run, const Plan& plan, const PatchMesh& mesh) {
+  if (!has_point_or_daylight(run.scene) || !simulates(run.plan, Effect::interreflection)) return {};
+  const double least_area = mean_area_of_goal(mesh, plan.goal.get()) / 64;
+  std::vector<std::uint8_t> is_left_out;
+  for (const double area : mesh.area) is_left_out.insert(is_left_out.end(), 4, area < least_area ? 1 : 0);
+  PatchMesh all = refine(mesh);
+  all.middles.clear();  // they belong to edges, on which light does not depend
+  const PatchMesh quarters = without_patches(all, is_left_out);
+  QuarterLight direct;
+  for (std::size_t half = 0; half < direct.size(); ++half) {
+    const std::uint64_t seed = hash({plan.assembly.seed, half});
+    const Field found = rough_direct_irradiance(run, plan, quarters, seed, rays_of_quarters(plan, mesh.size()));
+    direct[half] = Field::Zero(static_cast<Eigen::Index>(is_left_out.size()), found.cols());
+    Eigen::Index next = 0;
+    for (std::size_t q = 0; q < is_left_out.size(); ++q)
+      if (is_left_out[q] == 0) direct[half].row(static_cast<Eigen::Index>(q)) = found.row(next++);
+  }
+  return direct;
+}
+
+SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport,
+                           std::optional<QuarterLight> light) {
   if (transport.rays) {
     // The solution has all of the light but the rows.
-    RayLight& light = *transport.light;
-    result.light = std::move(light.as_found);
-    const UnfollowedErrors unfollowed{std::move(light.lit.unfollowed), std::move(light.in_mirrors.unfollowed)};
+    RayLight& with_rows = *transport.light;
+    result.light = std::move(with_rows.as_found);
+    const UnfollowedErrors unfollowed{std::move(with_rows.lit.unfollowed), std::move(with_rows.in_mirrors.unfollowed)};
     transport.light.reset();
     transport.facts = {};
-    return with_bars_of_rays(run, std::move(result), *transport.rays, unfollowed);
+    if (!light && !run.with.ray_exchange)
+      light = light_at_quarters(run, result.simulation.plan, result.simulation.mesh);
+    return with_bars_of_rays(run, std::move(result), *transport.rays, light.value_or(QuarterLight()), unfollowed);
   }
   return with_bars_of_pairs(run, std::move(result), std::move(transport));
 }

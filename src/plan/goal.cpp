@@ -17,11 +17,13 @@
 namespace patchlight {
 namespace {
 
-// The width of a rectangle with the area of a polygon, as long as its bounds.
+// The width of a rectangle with the area of a polygon, as long as its bounds; of a thin strip 1/256 of that length, so
+// that its patches stay few.
 double width_of(const Scene& scene, PolygonIndex polygon) {
   Box box;
   for (const Point& corner : corner_points(scene, polygon)) box.extend(corner);
-  return polygon_area(scene, polygon) / box.diagonal().norm();
+  const double length = box.diagonal().norm();
+  return std::max(polygon_area(scene, polygon) / length, length / 256);
 }
 
 // Some patches on each large polygon, and at least one on each other.

@@ -30,10 +30,6 @@ struct ImportanceHit {
 /// Importance is the solution of the adjoint equation psi = goal + F R psi (Smits, Arvo and Salesin 1992). Particles
 /// start on the surfaces of the goal and at sensors, and scatter as light does. No mesh is needed, so the search does
 /// not miss a small room in a wide terrain.
-///
-/// Importance is the solution of the adjoint equation psi = goal + F R psi (Smits, Arvo and Salesin 1992). Particles
-/// start on the surfaces of the goal, and at sensors, and scatter as light does. No mesh is needed, so that a small
-/// room in a wide terrain is not missed.
 struct Goal {
   /// Per polygon: 1 where a side lies at least partly in an enclosed space, or is named.
   std::vector<std::uint8_t> is_goal;

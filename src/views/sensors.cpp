@@ -96,20 +96,26 @@ GatheredIrradiance irradiance_at(const std::vector<Sensor>& sensors, const Simul
   const Lighting& lighting = world.sensor_lighting();
   const std::vector<EmitterSide> lamps = emitters_in_mirrors(simulation);
   const Field mirrored = without_exitance(sent, simulation, lamps);
+  OtherIrradiance direct;
+  const bool has_direct = has_point_or_daylight(world.sensor_scene()) || lighting.mirrors;
+  if (has_direct) {
+    DirectIrradiance found = direct_irradiance({lighting, faces_of(world.sensor_scene(), lamps)}, points_of(sensors),
+                                               {.seed = seed}, observer);
+    direct = {std::move(found.irradiance), std::move(found.standard_error)};
+  }
   GatheredIrradiance gathered = gather_irradiance(simulation.mesh, sent, world.all_faces(), sensors,
                                                   {.seed = seed,
                                                    .errors = radiosity_errors(simulation),
                                                    .paths = &lighting.paths,
                                                    .aim = lighting.mirrors ? &lighting.mirrors->aim : nullptr,
-                                                   .mirrored_light = &mirrored},
+                                                   .mirrored_light = &mirrored,
+                                                   .other = has_direct ? &direct : nullptr},
                                                   observer);
   // Light that is still under way, by how much is not known.
   const bool is_known = simulation.solution.converged || simulation.solution.error.size() > 0;
   if (!is_known) gathered.errors.solver.setConstant(std::nan(""));
-  if (has_point_or_daylight(world.sensor_scene()) || lighting.mirrors) {
-    const DirectIrradiance direct = direct_irradiance({lighting, faces_of(world.sensor_scene(), lamps)},
-                                                      points_of(sensors), {.seed = seed}, observer);
-    gathered.irradiance += direct.irradiance;
+  if (has_direct) {
+    gathered.irradiance += direct.mean;
     gathered.errors.rays = (gathered.errors.rays.square() + direct.standard_error.square()).sqrt();
   }
   return gathered;

@@ -25,19 +25,26 @@ struct RadiosityErrors {
   Field reflected;  ///< radiosity without exitance: its error is estimated if `mesh` is unknown
 };
 
+/// Irradiance at sensors (rows) that is not gathered, and its standard error, W/m^2.
+struct OtherIrradiance {
+  Field mean;
+  Field standard_error;
+};
+
 /// How the light at sensors is sampled.
 struct GatherOptions {
   int least_rays = 4;       ///< shadow rays to a bright patch before the sensor, unless these are too many
   int rays = 4096;          ///< to bright patches, in proportion to their possible light; as many over the hemisphere,
                             ///< and as many towards clear faces and mirrors
   int most_rays = 1 << 18;  ///< if the relative standard error is above wanted_error
-  double wanted_error = 0.01;  ///< requested relative standard error of a sensor
+  double wanted_error = 0.01;  ///< requested standard error of a sensor, relative to all of its light
   std::uint64_t seed = 1;
   bool slopes = true;  ///< light varies along patches; else each is even, and readings are linear in radiosity
   RadiosityErrors errors = {};
-  const LightPaths* paths = nullptr;      ///< the sensors' clear faces and mirrors; null: those of the occluder
-  const SpecularAim* aim = nullptr;       ///< aims rays at these faces; null: rays find them by chance
-  const Field* mirrored_light = nullptr;  ///< the radiosity that mirrors show; null: all of it
+  const LightPaths* paths = nullptr;       ///< the sensors' clear faces and mirrors; null: those of the occluder
+  const SpecularAim* aim = nullptr;        ///< aims rays at these faces; null: rays find them by chance
+  const Field* mirrored_light = nullptr;   ///< the radiosity that mirrors show; null: all of it
+  const OtherIrradiance* other = nullptr;  ///< decides the number of rays, and is not added; null: none
 };
 
 /// Standard errors of irradiances by source, W/m^2.
@@ -69,8 +76,8 @@ struct GatheredIrradiance {
 ///
 /// Rays form replicates with independent random shifts, whose scatter gives the standard error. Its lower bound is the
 /// heaviest ray of those bright patches whose rays agree, as no hit in n rays means at most a few in n. Sensors with
-/// too large a standard error get more rays, in proportion to its square. The random numbers depend on the place of the
-/// sensor.
+/// too large a standard error get more rays, in proportion to its square, but none to make it smaller than a seventh of
+/// the sensor's other errors. The random numbers depend on the place of the sensor.
 ///
 /// On each patch the radiosity is linear, with slopes fitted to the means of surrounding patches. The nonlinear part is
 /// an error, weighted by how unevenly the sensor sees the patch, docs/theory/irradiance-at-a-point.md. Such errors of
