@@ -87,6 +87,12 @@ std::vector<SampledPlace> places_for_chains(std::span<const SampledPlace> places
   return chosen;
 }
 
+// How a receiver looks for sky in mirrors.
+struct SkyInMirrors {
+  bool is_point = false;
+  std::vector<double> probabilities = {};  // SpecularAim::probabilities_from() the middle
+};
+
 struct MirrorSampler {
   const LightSampler& lights;
   const Lighting& lighting = lights.lighting();
@@ -95,7 +101,7 @@ struct MirrorSampler {
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
   OverChains over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const;
-  Spectrum of_sky(std::span<const SampledPlace> places, bool is_point, std::uint32_t key) const;
+  Spectrum of_sky(std::span<const SampledPlace> places, const SkyInMirrors& how, std::uint32_t key) const;
   std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort) const;
   OverChains replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                            std::span<const WantedChain> among) const;
@@ -170,21 +176,23 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
 }
 
 // The sum over places of one replicate: sky that paths see after one or more reflections. A point is one place, with
-// all of the samples.
-Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_point, std::uint32_t key) const {
+// all of the samples. All places share the probabilities of the middle, which cost more than the rays; places that see
+// other targets find them by the rays that are distributed as the cosine.
+Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, const SkyInMirrors& how, std::uint32_t key) const {
   Spectrum sum = Spectrum::Zero(lighting.bands);
   const auto& [paths, aim, occluder] = *lighting.mirrors;
   if (!lighting.sky) return sum;
-  const std::size_t each = is_point ? places.size() : 2;
+  const std::size_t each = how.is_point ? places.size() : 2;
   std::vector<Ray> rays;
   std::vector<double> weights;
-  for (std::size_t k = 0; k < (is_point ? 1 : places.size()); ++k) {
+  for (std::size_t k = 0; k < (how.is_point ? 1 : places.size()); ++k) {
     std::vector<std::array<double, 2>> samples;
     for (std::size_t n = 0; n < each; ++n) {
       const std::array<double, 4>& sample = places[(k + n) % places.size()].sample;
       samples.push_back({sample[2], sample[3]});
     }
-    const std::vector<double> probabilities = aim.probabilities_from(places[k].at);
+    const std::vector<double> probabilities =
+        how.probabilities.empty() ? aim.probabilities_from(places[k].at) : how.probabilities;
     if (probabilities.empty() && aim.has_all_faces()) continue;  // no reflection can be seen
     for (const auto& [ray, weight] : aim.rays(places[k].at, probabilities, samples)) {
       rays.push_back(ray);
@@ -197,7 +205,7 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, bool is_poi
            sum += weights[path.start] * path.throughput * radiance(*lighting.sky, path.ray.direction);
          return Continuation::specular;
        });
-  return (is_point ? static_cast<double>(places.size()) : 1.0) * sum;
+  return (how.is_point ? static_cast<double>(places.size()) : 1.0) * sum;
 }
 
 // Those over which no other polygon lies; replicates without such a place are left out of the numbers.
@@ -225,12 +233,13 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), unfollowed};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
   OverChains found = over_chains(chains, places_for_chains(places, chains.size()));
+  SkyInMirrors to_sky{.is_point = receiver.is_point()};
+  if (lighting.sky) to_sky.probabilities = lighting.mirrors->aim.probabilities_from(middle);
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
     const auto sky_key = hash({key, static_cast<std::uint64_t>(first->replicate)});
-    found.light.row(first->replicate) +=
-        of_sky({first, last}, receiver.is_point(), sky_key) / static_cast<double>(last - first);
+    found.light.row(first->replicate) += of_sky({first, last}, to_sky, sky_key) / static_cast<double>(last - first);
     first = last;
   }
   found.beyond.rowwise() += unfollowed;
