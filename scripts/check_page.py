@@ -149,7 +149,7 @@ def faults_of_patch(told, points, corners, cells):
     outline = [points[k] for k in corners[patch]]
     place = [float(word) for word in told["place"].split()]
     extent = max(max(p[k] for p in points) - min(p[k] for p in points) for k in range(3))
-    step = extent / 65535  # of the page's coordinates
+    step = extent / 65535  # by which the page lowers faces under others
     if distance_to_plane(place, outline) > 2 * step:
         yield f"patch {patch}: the place clicked is {distance_to_plane(place, outline)} m off its plane"
     if any(not min(p[k] for p in outline) - 2 * step <= place[k] <= max(p[k] for p in outline) + 2 * step

@@ -74,20 +74,25 @@ Json sensor_maps(const Scene& scene, const Readings& readings) {
   return maps;
 }
 
-// Corners as multiples of the bounds' sizes over 65535: 0.15 mm in a room of ten meters.
+// The bounds of a page's model have so many steps along each axis: 0.06 mm in a terrain of a kilometer. Larger steps
+// would open gaps along the edges of faces.
+constexpr std::uint32_t position_steps = (1U << 24) - 1;
+
+// Corners in these steps.
 Json positions_part(const std::vector<Point>& vertices) {
   Box box;
   for (const Point& vertex : vertices) box.extend(vertex);
-  std::vector<std::uint16_t> steps;
+  std::vector<std::uint32_t> steps;
   steps.reserve(3 * vertices.size());
   for (const Point& vertex : vertices) {
     for (int axis = 0; axis < 3; ++axis) {
       const double size = box.sizes()[axis];
       const double share = size > 0 ? (vertex[axis] - box.min()[axis]) / size : 0;
-      steps.push_back(static_cast<std::uint16_t>(std::lround(65535 * share)));
+      steps.push_back(static_cast<std::uint32_t>(std::lround(position_steps * share)));
     }
   }
-  Json part = packed_array<std::uint16_t>(steps, 3);
+  Json part = packed_array<std::uint32_t>(steps, 3);
+  part["steps"] = position_steps;
   part["low"] = json_array(vertices.empty() ? Point::Zero().eval() : box.min());
   part["high"] = json_array(vertices.empty() ? Point::Zero().eval() : box.max());
   return part;

@@ -20,14 +20,15 @@ function outwardOf(corners, normal) {
 }
 
 // The faces of the page as triangles, three corners each, relative to the center of their bounds. `groups` gives the
-// opacity and layer of ranges of triangles. A face with others over it is lowered by the rounding of positions, layer
-// by layer, and a dark one once more. Opaque faces with light have an `outward` vector for each corner, in units of
-// 1/63.5, by which the shader makes neighbors overlap.
+// opacity and layer of ranges of triangles. A face with others over it is lowered by two steps, layer by layer, and a
+// dark one once more. Opaque faces with light have an `outward` vector for each corner, in units of 1/63.5, by which
+// the shader makes neighbors overlap.
 function triangles(faces, opacityOf, layerOf, dark) {
   const {low, high} = faces;
   const middle = low.map((value, axis) => (value + high[axis]) / 2);
-  const step = Math.max(...low.map((value, axis) => high[axis] - value)) / 65535;
-  const at = (vertex) => new THREE.Vector3(...[0, 1, 2].map((axis) => low[axis] - middle[axis] + faces.positions[3 * vertex + axis] / 65535 * (high[axis] - low[axis])));
+  const longest = Math.max(...low.map((value, axis) => high[axis] - value));
+  const step = longest / 65535;
+  const at = (vertex) => new THREE.Vector3(...[0, 1, 2].map((axis) => low[axis] - middle[axis] + faces.positions[3 * vertex + axis] / faces.steps * (high[axis] - low[axis])));
   const count = faces.row.length;
   let triangleCount = 0;
   for (let face = 0; face < count; ++face) triangleCount += faces.corners[4 * face + 2] === faces.corners[4 * face + 3] ? 1 : 2;
@@ -56,13 +57,13 @@ function triangles(faces, opacityOf, layerOf, dark) {
     }
     return {opacity, layer, first, count: next - first};
   });
-  return {positions, outward, vertices, faceOf, groups, middle, step, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
+  return {positions, outward, vertices, faceOf, groups, middle, rounding: longest / faces.steps, size: Math.hypot(...low.map((value, axis) => high[axis] - value)) || 1};
 }
 
 // The lines around faces, two ends each.
 function outlines(faces, mesh, chosen) {
   const ends = [];
-  const at = (vertex) => [0, 1, 2].map((axis) => faces.low[axis] - mesh.middle[axis] + faces.positions[3 * vertex + axis] / 65535 * (faces.high[axis] - faces.low[axis]));
+  const at = (vertex) => [0, 1, 2].map((axis) => faces.low[axis] - mesh.middle[axis] + faces.positions[3 * vertex + axis] / faces.steps * (faces.high[axis] - faces.low[axis]));
   for (const face of chosen) {
     const corners = Array.from(faces.corners.subarray(4 * face, 4 * face + 4));
     corners.forEach((vertex, k) => {

@@ -88,7 +88,7 @@ async function unpackedModel() {
   const looks = [];
   for (const {name, colours, sky} of model.looks) looks.push({name, ...await unpackedAll(sky ? {colours, sky} : {colours})});
   const sky = model.sky ? {inARing: model.sky.in_a_ring, directions: await unpacked(model.sky.directions)} : null;
-  return {...model, looks, sky, faces: {...arrays, low: model.positions.low, high: model.positions.high}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
+  return {...model, looks, sky, faces: {...arrays, low: model.positions.low, high: model.positions.high, steps: model.positions.steps}, rows: await unpackedAll(model.rows), values: await unpackedAll(model.values)};
 }
 
 // The values beyond the range.
@@ -195,7 +195,7 @@ function listenToView(model, view) {
     edges = byId("edges").checked ? view.lines(outlines(model.faces, view.mesh, model.faces.row.keys()), 0x555555) : null;
   });
   const luminaires = data.report ? data.report.input.luminaires : [];
-  if (luminaires.length > 0) view.lines(luminaireMarks(luminaires, view.inside, view.size / 100), 0xff9000);
+  if (luminaires.length > 0) view.lines(luminaireMarks(luminaires, view.inside, view.size / 100), 0xff9000, false);
   listenToKeys(view, {home: () => view.look(...from.home), choose: () => choose(0, 0)});
   view.look(...from.home);
 }

@@ -12,9 +12,9 @@ function withOverlap(material, reach) {
 }
 
 // A material for each group of faces, all opaque or with their own opacity. A pane adds its reflection to the light
-// through it. Faces under others are drawn farther away, and all faces behind lines.
+// through it. Faces under others are drawn farther away.
 function surfaceMaterials(groups, reach) {
-  const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1 + layer, polygonOffsetUnits: 1 + 4 * layer});
+  const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: layer, polygonOffsetUnits: 1 + 4 * layer});
   const opaque = ({layer}) => withOverlap(new THREE.MeshBasicMaterial(plain(layer)), reach);
   const clear = ({layer, opacity}) => new THREE.MeshBasicMaterial({...plain(layer), transparent: true, opacity, depthWrite: false, blending: THREE.CustomBlending,
     blendSrc: THREE.OneFactor, blendDst: THREE.OneMinusSrcAlphaFactor});
@@ -86,7 +86,7 @@ function modelView(canvas, model) {
       // The near plane: a larger distance gives better depth resolution.
       camera.near = Math.max(mesh.size / 2000, 0.9 * bounds.distanceToPoint(camera.position) * Math.cos(0.5 * camera.fov * Math.PI / 180) * 0.5);
       camera.updateProjectionMatrix();
-      reach.value.set(mesh.step, overlap * 2 * Math.tan(0.5 * camera.fov * Math.PI / 180) / Math.max(1, canvas.height));
+      reach.value.set(mesh.rounding, overlap * 2 * Math.tan(0.5 * camera.fov * Math.PI / 180) / Math.max(1, canvas.height));
       if (sky) sky.position.copy(camera.position);
       if (sky) sky.scale.setScalar(4 * camera.near);
       renderer.render(scene, camera);
@@ -132,13 +132,22 @@ function modelView(canvas, model) {
     if (sky) sky.visible = sky.userData.wanted && view.cut === null;
     view.draw();
   };
-  view.lines = (ends, colour) => {
+  // Faces are drawn behind lines on them, by their change of depth across a pixel. Without such lines they are not: a
+  // face that is seen at a flat angle would let other faces through at its edge.
+  let linesOnFaces = 0;
+  const addLinesOnFaces = (more) => {
+    linesOnFaces += more;
+    for (const [k, {layer}] of mesh.groups.entries())
+      for (const material of [opaque[k], seeThrough[k]]) material.polygonOffsetFactor = layer + (linesOnFaces > 0 ? 1 : 0);
+    view.draw();
+  };
+  view.lines = (ends, colour, onFaces = true) => {
     const made = new THREE.BufferGeometry();
     made.setAttribute("position", new THREE.BufferAttribute(ends, 3));
     const lines = new THREE.LineSegments(made, new THREE.LineBasicMaterial({color: colour}));
     scene.add(lines);
-    view.draw();
-    return {remove: () => { scene.remove(lines); made.dispose(); view.draw(); }};
+    addLinesOnFaces(onFaces ? 1 : 0);
+    return {remove: () => { scene.remove(lines); made.dispose(); addLinesOnFaces(onFaces ? -1 : 0); }};
   };
   // The face drawn at a place of the canvas, -1 to 1 from left to right and from below to above.
   view.pick = (x, y) => {
