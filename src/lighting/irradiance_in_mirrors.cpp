@@ -50,8 +50,8 @@ struct WantedChain {
   std::vector<const LightSource*> sources;
 };
 
-// The relative error of a sum over n chains with k samples each falls as 1 / sqrt(n k): beyond so many chains, each
-// takes fewer.
+// The relative error of a sum over n chains with k samples each is proportional to 1 / sqrt(n k). Above this number of
+// chains, each takes fewer samples.
 constexpr std::size_t chains_with_all_samples = 32;
 
 // A place of the receiver, which samples lead on from it, and which replicate it belongs to.

@@ -286,6 +286,25 @@ TEST(GatherIrradiance, OfBrightPatchesThatOneWallHidesIsZeroWithoutError) {
   EXPECT_EQ(found.errors.rays(0, 0), 0);
 }
 
+// Light that is known otherwise decides the number of rays alone: it is not added, and rays are as many as leave a
+// hundredth of all light, or a seventh of its error.
+TEST(GatherIrradiance, TakesNoRaysBelowTheErrorsOfOtherLight) {
+  const auto [scene, mesh, radiosity, sensors] = UnderABoard(0.97, 0.51);
+  const Occluder occluder(scene, Occluder::Blockers::all);
+  const auto with = [&](double mean, double error) {
+    const OtherIrradiance other{Field::Constant(1, 1, mean), Field::Constant(1, 1, error)};
+    return gather_irradiance(mesh, radiosity, occluder, sensors,
+                             {.rays = 64, .wanted_error = 0.002, .slopes = false, .other = &other});
+  };
+  const GatheredIrradiance alone = with(0, 0);
+  const double light = alone.irradiance(0, 0);
+  ASSERT_GT(light, 0);
+  for (const GatheredIrradiance& found : {with(1000 * light, 0), with(0, light)}) {
+    EXPECT_GT(found.errors.rays(0, 0), 2 * alone.errors.rays(0, 0));
+    EXPECT_NEAR(found.irradiance(0, 0), light, 4 * std::hypot(found.errors.rays(0, 0), alone.errors.rays(0, 0)));
+  }
+}
+
 TEST(GatherIrradiance, SeesNothingThroughTheFloor) {
   const Scene scene = cube_room(0.5, 0.5);
   const PatchMesh mesh = fronts(scene, 0.5);

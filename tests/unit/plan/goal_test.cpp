@@ -50,6 +50,23 @@ TEST(Goal, IsEverythingWithoutDaylight) {
   EXPECT_FALSE(goal_of(scene));
 }
 
+// A path of 200 km would take 10^5 patches as long as it is wide.
+TEST(Goal, LeavesALongPathInFewPatches) {
+  Scene scene = office_on(30);
+  for (std::size_t k = 0; k < 4; ++k) {
+    Point& corner = scene.vertices[scene.polygons.back().corners[k]];
+    corner = Point(corner.x() < 2 ? -1e5 : 1e5, corner.y() < -1 ? -1 : -0.1, -0.2);
+  }
+  const auto goal = goal_of(scene);
+  ASSERT_TRUE(goal);
+  const auto path = static_cast<PolygonIndex>(scene.polygons.size() - 1);
+  const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::automatic), edges_for(scene, 0.5, goal.get()));
+  for (const Side side : {Side::front, Side::back}) {
+    const auto [begin, end] = mesh.patches_on(path, side);
+    EXPECT_LE(end - begin, 1024U);
+  }
+}
+
 // Patches close to the window matter most, and are cut first. The ground gets 200 patches more than its outline takes,
 // and at most as many again by balance.
 TEST(Goal, CutsTheGroundBeforeTheWindow) {
