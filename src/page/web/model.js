@@ -1,25 +1,34 @@
-// Overlap of faces beyond their edges, in pixels. A rounded corner on a neighbor's edge leaves smaller gaps.
+// By how much fillers extend beyond the edges of faces, in pixels. A rounded corner on a neighbor's edge leaves smaller gaps.
 const overlap = 0.15;
 
-// Faces that overlap their neighbors, by the rounding of positions and a part of a pixel. `reach` holds both.
-function withOverlap(material, reach) {
+// How far faces under others are drawn behind them, layer by layer.
+const behind = (layer) => layer / 16;
+
+// Faces once more, larger by the rounding of positions and a part of a pixel, and farther away by a few times that: they
+// fill gaps between faces and are hidden elsewhere. `reach` holds both.
+function underneath(material, reach) {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.reach = reach;
-    shader.vertexShader = "attribute vec3 outward;\nuniform vec2 reach;\n" + shader.vertexShader.replace("#include <begin_vertex>",
-      "#include <begin_vertex>\ntransformed += 2.0 * outward * (reach.x + reach.y * max(0.0, -(modelViewMatrix * vec4(position, 1.0)).z));");
+    shader.vertexShader = "attribute vec3 outward;\nuniform vec2 reach;\n" + shader.vertexShader
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nfloat away = length((modelViewMatrix * vec4(position, 1.0)).xyz);"
+        + "\nfloat larger = reach.x + reach.y * away;\ntransformed += 2.0 * outward * larger;")
+      .replace("#include <project_vertex>", "#include <project_vertex>\nmvPosition.xyz *= 1.0 + 8.0 * larger / max(away, 1e-6);\ngl_Position = projectionMatrix * mvPosition;");
   };
   return material;
 }
 
 // A material for each group of faces, all opaque or with their own opacity. A pane adds its reflection to the light
-// through it. Faces under others are drawn farther away.
+// through it. Faces under others are drawn farther away, by a fraction of their change of depth across a pixel: more would
+// let other faces through at their edges.
 function surfaceMaterials(groups, reach) {
-  const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: layer, polygonOffsetUnits: 1 + 4 * layer});
-  const opaque = ({layer}) => withOverlap(new THREE.MeshBasicMaterial(plain(layer)), reach);
+  const plain = (layer) => ({vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: behind(layer), polygonOffsetUnits: 1 + 4 * layer});
+  const opaque = ({layer}) => new THREE.MeshBasicMaterial(plain(layer));
   const clear = ({layer, opacity}) => new THREE.MeshBasicMaterial({...plain(layer), transparent: true, opacity, depthWrite: false, blending: THREE.CustomBlending,
     blendSrc: THREE.OneFactor, blendDst: THREE.OneMinusSrcAlphaFactor});
   const all = groups.map(opaque);
-  return {opaque: all, seeThrough: groups.map((group, k) => group.opacity < 1 ? clear(group) : all[k])};
+  const none = new THREE.MeshBasicMaterial({visible: false});
+  return {opaque: all, seeThrough: groups.map((group, k) => group.opacity < 1 ? clear(group) : all[k]),
+    fillers: groups.map((group) => group.opacity < 1 ? none : underneath(opaque(group), reach))};
 }
 
 // Closed solids that are cut: their faces from inside, in one color, look like the plane of the cut.
@@ -52,7 +61,7 @@ function skyDome({directions, inARing}) {
 function modelView(canvas, model) {
   const {faces, up} = model;
   const mesh = triangles(faces, (row) => model.opacity[model.rows.material_id[row]], (row) => model.rows.layer[row], model.rows.dark);
-  const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+  const renderer = new THREE.WebGLRenderer({canvas, preserveDrawingBuffer: true});
   renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue("--stage").trim());
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(mesh.positions, 3));
@@ -60,11 +69,12 @@ function modelView(canvas, model) {
   geometry.setAttribute("outward", new THREE.BufferAttribute(mesh.outward, 3, true));
   // A side without patches is not drawn: rooms are looked into from outside.
   const reach = {value: new THREE.Vector2()};
-  const {opaque, seeThrough} = surfaceMaterials(mesh.groups, reach);
+  const {opaque, seeThrough, fillers} = surfaceMaterials(mesh.groups, reach);
   mesh.groups.forEach(({first, count}, k) => geometry.addGroup(3 * first, 3 * count, k));
   const solid = new THREE.Mesh(geometry, opaque);
   const scene = new THREE.Scene();
   scene.add(solid);
+  scene.add(new THREE.Mesh(geometry, fillers));
   const fill = fillOf(mesh, faces, model.rows.filled);
   scene.add(fill);
   const bounds = new THREE.Box3().setFromBufferAttribute(geometry.attributes.position);
@@ -94,7 +104,8 @@ function modelView(canvas, model) {
   };
   view.fit = () => {
     const {clientWidth, clientHeight} = canvas.parentElement;
-    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    // Twice as many pixels smooth edges. Multisampling would do it with the depth of steep faces outside of these.
+    renderer.setPixelRatio(2 * Math.min(1.5, window.devicePixelRatio || 1));
     renderer.setSize(clientWidth, clientHeight, false);
     camera.aspect = clientWidth / clientHeight;
     camera.updateProjectionMatrix();
@@ -138,7 +149,7 @@ function modelView(canvas, model) {
   const addLinesOnFaces = (more) => {
     linesOnFaces += more;
     for (const [k, {layer}] of mesh.groups.entries())
-      for (const material of [opaque[k], seeThrough[k]]) material.polygonOffsetFactor = layer + (linesOnFaces > 0 ? 1 : 0);
+      for (const material of [opaque[k], seeThrough[k]]) material.polygonOffsetFactor = behind(layer) + (linesOnFaces > 0 ? 1 : 0);
     view.draw();
   };
   view.lines = (ends, colour, onFaces = true) => {
