@@ -119,8 +119,8 @@ def accuracy(b):
     asked = b.program("benchmark_accuracy", b.size(1200, 4000), b.size("5", "3,1"), *rooms)
     return [
         "## Requested accuracy\n\n`solve --accuracy` refines the mesh until the estimated error is below the requested one. "
-        f"The reference is a solution of at least {b.size(1200, 4000)} patches with 32 samples per pair. "-": the solution has "
-        "more than a quarter of the reference's patches, so that its true error is not known.\n\n" + asked +
+        f"The reference is a solution of at least {b.size(1200, 4000)} patches with 32 samples per pair. Where a solution "
+        "has more than a quarter of its patches, the true error is not known (-).\n\n" + asked +
         "\nThe columns *true* and *stated* are errors of the patches relative to the reflected light. A patch is within its bar if its "
         "true error is below the standard error that patchlight prints.\n",
         crosschecks(b), cornell(b), spectral_bands(b)]
