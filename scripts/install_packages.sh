@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache git
   libeigen3-dev libembree-dev libopenmesh-dev libgeos-dev libvtk9-dev libtbb-dev libboost-dev
   libtinyobjloader-dev libassimp-dev libtinygltf-dev libstb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libpugixml-dev libdraco-dev libmeshoptimizer-dev libssl-dev zlib1g-dev libcairo2-dev libopenexr-dev libjs-three pkg-config
-  libgtest-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
+  libgtest-dev python3 pybind11-dev python3-dev python3-numpy python3-scipy python3-meshio pyflakes3 clang-format clang-tidy clang-14 libclang-rt-14-dev dpkg-dev file locales
 )
 
 docs=(python3-sphinx python3-myst-parser furo python3-sphinxcontrib.bibtex libjs-mathjax)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks the format of every C++ file, the module layers and the prose; with --tidy also runs clang-tidy, when it is installed, on all
+# Checks the format of every C++ file, the names in Python files, the module layers and the prose; with --tidy also runs clang-tidy, when it is installed, on all
 # sources or on those that have changed since the commit BASE. All take about an hour of one processor.
 # usage: scripts/lint.sh [--tidy [BASE]]
 set -euo pipefail
@@ -8,6 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mapfile -t files < <(git ls-files --cached --others --exclude-standard '*.h' '*.cpp')
 clang-format --dry-run --Werror "${files[@]}"
 echo "lint: ${#files[@]} files are formatted"
+pyflakes3 scripts tests
 python3 scripts/check_layers.py
 python3 scripts/check_prose.py
 

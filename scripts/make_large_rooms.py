@@ -36,7 +36,7 @@ class Random:
         return ((self.next() >> 11) + 0.5) / 9007199254740992
 
 
-def turned_box(model, material, centre, half, angle, inward=False, materials=None):
+def turned_box(model, material, center, half, angle, inward=False, materials=None):
     """Faces by axis and end, as (2, 0) for the bottom; `materials` overrides some."""
     c, s = math.cos(angle), math.sin(angle)
     axes = ((c, s, 0), (-s, c, 0), (0, 0, 1))
@@ -48,18 +48,18 @@ def turned_box(model, material, centre, half, angle, inward=False, materials=Non
 
             def corner(a, b):
                 steps = {axis: 2 * end - 1, u: a, v: b}
-                return tuple(centre[d] + sum(steps[k] * half[k] * axes[k][d] for k in range(3)) for d in range(3))
+                return tuple(center[d] + sum(steps[k] * half[k] * axes[k][d] for k in range(3)) for d in range(3))
 
             model.face((materials or {}).get((axis, end), material), corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1))
 
 
-def sphere(model, material, centre, radius, rings):
+def sphere(model, material, center, radius, rings):
     def point(i, j):
         theta, phi = math.pi * i / rings, math.pi * (j % (2 * rings)) / rings
         return (
-            centre[0] + radius * math.sin(theta) * math.cos(phi),
-            centre[1] + radius * math.sin(theta) * math.sin(phi),
-            centre[2] + radius * math.cos(theta),
+            center[0] + radius * math.sin(theta) * math.cos(phi),
+            center[1] + radius * math.sin(theta) * math.sin(phi),
+            center[2] + radius * math.cos(theta),
         )
 
     for i in range(rings):
@@ -111,9 +111,9 @@ def room(name, count, are_spheres=False, shines_up=False, rings=0):
     model.group("things")
     for k, (center, half, angle, _) in enumerate(placed):
         if are_spheres:
-            sphere(model, f"thing{k}", centre, half[0], rings)
+            sphere(model, f"thing{k}", center, half[0], rings)
         else:
-            turned_box(model, f"thing{k}", centre, half, angle)
+            turned_box(model, f"thing{k}", center, half, angle)
     return model
 
 

@@ -4,7 +4,7 @@ import json
 import math
 import unittest
 
-from support import ROOM, ToolTest, content, is_one_message
+from support import ToolTest, content, is_one_message
 
 GOOD, USAGE, NOT_CONVERGED, OUTPUT = 0, 1, 3, 6
 STORED = ["jacobi", "gauss-seidel", "sor", "symmetric-gauss-seidel", "chebyshev", "progressive", "overshooting", "cg",

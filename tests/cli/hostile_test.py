@@ -154,7 +154,7 @@ class HostileTest(ToolTest):
     def test_points_from_pipes_and_no_points_from_devices(self):
         line = b"0 0 0.5 0 0 1\n"
         self.good(*solve("--points", "/dev/stdin", "--points-output", "a.csv"), input=line)
-        done = subprocess.run(["bash", "-c", f'"$@" --points <(printf "0 0 0.5 0 0 1\\n") --points-output b.csv', "bash",
+        done = subprocess.run(["bash", "-c", '"$@" --points <(printf "0 0 0.5 0 0 1\\n") --points-output b.csv', "bash",
                                TOOL, *solve()], cwd=self.folder, capture_output=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         def columns(name):

@@ -2,7 +2,6 @@
 
 usage: module_test.py TOOL MESHES, with the module's folder in PYTHONPATH. Ends with 77 where numpy or scipy is missing.
 """
-import _thread
 import json
 import os
 import pathlib
