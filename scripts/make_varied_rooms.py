@@ -137,10 +137,10 @@ def corridor():
     return model
 
 
-def colours():
+def colors():
     materials = [Material("red", (0.63, 0.06, 0.05)), Material("green", (0.14, 0.45, 0.09)),
                  Material("warm", grey(0.7), (30, 18, 6)), Material("cool", grey(0.7), (4, 9, 22))]
-    model = Model("colours", ["Red and green walls under a warm and a cool lamp."],
+    model = Model("colors", ["Red and green walls under a warm and a cool lamp."],
                   [Material("wall", (0.73, 0.72, 0.68)), *materials])
     model.group("room")
     box(model, "wall", (0, 0, 0), (3, 3, 3), inward=True, materials={"-x": "red", "+x": "green"})
@@ -184,7 +184,7 @@ def louvres():
 def main():
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    for make in (empty, blocks, open_side, contact, door_ajar, bright, tiny_lamp, thin_walls, corridor, colours, slits,
+    for make in (empty, blocks, open_side, contact, door_ajar, bright, tiny_lamp, thin_walls, corridor, colors, slits,
                  louvres):
         model = make()
         (folder / f"{model.name}.obj").write_text(model.obj())

@@ -156,7 +156,7 @@ def cornell(b):
             seconds = float(solve) + (float(gather) if how == "gathered" else 0)
             rows.append((patches, f"{seconds:.1f}", how, f"{median:.2f} %", f"{error:.2f} %", f"{bias:+.2f} %"))
     with open(folder / "time_error_cornell.csv", newline="", encoding="utf-8") as stream:
-        others = [(row["system"], row["settings"], row["user_cpu_s"], row["rms_error_pct"] + " %", row["median_error_pct"].replace("(se)", "") + " %")
+        others = [(row["system"], re.sub(r"(?<!\d)\.(?=\d)", "0.", row["settings"]), row["user_cpu_s"], row["rms_error_pct"] + " %", row["median_error_pct"].replace("(se)", "") + " %")
                   for row in csv.DictReader(stream) if row["measured_against"] != "stderr"]
     return ("## Cornell box\n\nThe reference is the irradiance at points of the open Cornell box: the weighted mean of two renderers, Radiance 5.4a "
             "(pure Monte Carlo) and Cycles 3.4.1. Its own median relative standard error is 0.18 %. Values are means of three bands.\n\n" +

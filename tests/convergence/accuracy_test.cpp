@@ -115,7 +115,7 @@ TEST(AskedAccuracyOf, WhatPairsDoNotFitForGoesByRays) {
 // lamps are almost uniformly bright, so the mesh error alone would not cut them. If half of their patches are cut into
 // four, the lamps have two and a half times as many.
 TEST(AskedAccuracyOf, CutsLampsWhereTheirLightIsNoisy) {
-  const Scene scene = varied_room("colours");
+  const Scene scene = varied_room("colors");
   const auto lamps = [](const Simulation& s) { return (s.problem.exitance > 0).rowwise().any().count(); };
   const auto noisy = [](double accuracy) {
     Request request = asked(accuracy);
