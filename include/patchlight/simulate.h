@@ -7,6 +7,7 @@
 #include "patchlight/solve/problem.h"
 #include "patchlight/solve/solve.h"
 #include "patchlight/transport/exchange.h"
+#include "patchlight/transport/transport_operator.h"
 
 #include <functional>
 #include <memory>
@@ -58,6 +59,15 @@ struct SpaceErrors {
   AccuracyStep errors;  ///< with the number of patches; no seconds
 };
 
+/// The light between patches, H = F B, as a run has solved it in some bands: for views that need its adjoint. Areas are
+/// those for which F is reciprocal, the part of each patch that holds light from all directions alike.
+struct SolvedTransport {
+  std::vector<Eigen::Index> bands;                    ///< columns of RadiosityProblem that it is for
+  std::shared_ptr<const TransportOperator> light;     ///< F
+  Scattering scattering;                              ///< R of these bands
+  Eigen::VectorXd area;                               ///< m^2
+};
+
 struct RayExchange;
 struct RayOptions;
 struct RowBlocks;
@@ -89,6 +99,8 @@ struct Simulation {
                                               ///< in a room the level of the light is common to all. Empty where none
                                               ///< are known
   bool unfinished = false;                    ///< stopped by the observer, with Steps::keeps_unfinished
+  std::vector<SolvedTransport> transports = {};  ///< with Steps::keeps_transport, one for each color that panes and
+                                                 ///< mirrors distinguish
   std::shared_ptr<const World> world = {};    ///< the scene with its rays and lights, which views share; never
                                               ///< null after simulate()
 };
@@ -125,6 +137,7 @@ struct Steps {
   /// Simulation::unfinished. Without either it throws Canceled. Called when there is a first result to return, and
   /// after each better one.
   std::function<void()> keeps_unfinished = {};
+  bool keeps_transport = false;  ///< fills Simulation::transports
 };
 
 /// From a scene to converged radiosities: the whole program.

@@ -36,6 +36,10 @@ enum Stream : std::uint64_t {
   hemisphere_of_sensor = 0x68656d69,
   choice_of_bright_patch = 0x62726967,
 
+  // A year of daylight
+  points_to_sky_divisions = 0x79656172,
+  places_in_sun = 0x73756e,
+
   // Russian roulette along specular paths
   survival_of_path = 0x726f756c,
 

@@ -224,6 +224,7 @@ std::map<std::string, Finish> add_commands(CLI::App& tool) {
                                           {"render", add_render(tool)},
                                           {"plan", add_plan(tool)},
                                           {"crosscheck", add_crosscheck(tool)},
+                                          {"annual", add_annual(tool)},
                                           {"relight", add_relight(tool)},
                                           {"form-factors", add_form_factors(tool)},
                                           {"compare-solvers", add_compare_solvers(tool)},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "patchlight/annual/annual.h"
 #include "patchlight/input/read_scene.h"
 #include "patchlight/plan/plan.h"
 #include "patchlight/views/picture.h"
@@ -110,6 +111,14 @@ struct InitArguments : ModelArguments {
   std::filesystem::path output;  ///< .toml
 };
 
+struct AnnualArguments : RunArguments {
+  std::filesystem::path output;   ///< a folder
+  std::filesystem::path weather;  ///< input: .epw; empty: that of the scene file
+  std::filesystem::path points;   ///< input: points, in addition to the scene's sensors
+  int first_hour = 8, last_hour = 18;
+  AnnualOptions options;
+};
+
 struct FormFactorArguments : RunArguments {
   std::filesystem::path output;  ///< a folder, or a .npy or .mtx file for the matrix only
   MatrixFormat format = MatrixFormat::npy;
@@ -160,7 +169,7 @@ struct Information {
 };
 
 using Arguments =
-    std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments, FormFactorArguments,
+    std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments, AnnualArguments, FormFactorArguments,
                  ComparisonArguments, ConvergenceArguments, CrosscheckArguments, SelftestArguments, RenderArguments>;
 
 /// Parses the command line without reading or writing files. \throws UsageError.

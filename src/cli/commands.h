@@ -24,6 +24,9 @@ ExitCode render(const RenderArguments& arguments);
 /// A dry run: prints the effects that would be simulated, the reasons, and the expected cost.
 ExitCode plan(const PlanArguments& arguments);
 
+/// Computes a year of daylight at sensors and writes a folder.
+ExitCode annual(const AnnualArguments& arguments);
+
 /// Solves, traces paths, and prints the largest differences. Returns validation_failed when they disagree.
 ExitCode crosscheck(const CrosscheckArguments& arguments);
 

@@ -68,6 +68,12 @@ constexpr OptionText options[] = {
      "2024-06-21T12:00:00Z@52.5,13.4:80000lx. Without LX, the sun only shapes a clear sky. Default: no sun, or the sun "
      "of the scene file."},
     {"--ground", "", daylight, usual, "R", "Reflectance of the ground below the horizon, 0 to 1 [default: 0.2]", ""},
+    {"--weather", "annual", daylight, common, "FILE.epw", "Weather of a year [default: that of the scene file]",
+     "An EnergyPlus weather file with all 8760 hours. It replaces sun and sky of the scene file."},
+    {"--hours", "annual", daylight, common, "FROM-TO", "Hours of each day that count, standard time [default: 8-18]",
+     "8-18 is from 8:00 to 18:00, ten hours. The illuminance is computed for all hours of the year."},
+    {"--sky-division", "annual", daylight, advanced, "1|2|4", "Parts of the sky: 1 is 145, 2 577, 4 2305 [default: 4]",
+     "Tregenza's parts, cut once, twice or four times each way (Reinhart). The sun is not cut: each hour has its own."},
     {"--weather", "", daylight, usual, "FILE@HOUR", "Sun and sky of one hour of an EPW file: city.epw@6-21-12",
      "HOUR is MONTH-DAY-HOUR in standard time; the hour begins there. Default: no weather file, or that of the scene "
      "file."},
@@ -76,6 +82,9 @@ constexpr OptionText options[] = {
      "Solved patches (.vtp, .vtu, .ply, .glb; repeatable) [default: none]",
      ".vtp is for ParaView and for patchlight render; .vtu for tools that read only unstructured grids. .ply and .glb "
      "have vertex colors for viewers and the web."},
+    {"-o,--output", "annual", results, common, "FOLDER", "Folder for illuminances and tables of the year",
+     "illuminance.npy and .ill have all hours and sensors; rooms.csv and sensors.csv the measures with errors. An "
+     "earlier year in the folder is replaced."},
     {"-o,--output", "init", results, common, "SCENE.toml", "Scene file to create; it must not exist yet", ""},
     {"-o,--output", "form-factors", results, common, "FOLDER|FILE", "Folder to create, or one matrix file (.npy, .mtx)",
      "The folder holds the matrix, the areas, the patches and the scene. patchlight relight and patchlight solve "
@@ -312,6 +321,11 @@ constexpr CommandText commands[] = {
      "# a view of the scene file, larger\npatchlight render office.toml --solution office.vtp --view desk --size "
      "1600x900 -o desk.png\n"
      "# how two solutions differ\npatchlight render room.obj --solution a.vtp --difference b.vtp -o difference.png\n"},
+    {"annual", start, "Compute a year of daylight at the sensors", "MODEL... -o FOLDER [OPTIONS]",
+     "Computes the illuminance at all sensors in each hour of a year, and daylight autonomy, sDA, ASE, UDI and the "
+     "levels of EN 17037 for each sensor and room. Sun and sky come from a weather file. Electric light is left out.",
+     "# a year of a building with sensors in its rooms\npatchlight annual office.toml --weather city.epw -o year\n"
+     "# for an office that is used from 7 to 17\npatchlight annual office.toml --weather city.epw --hours 7-17 -o year\n"},
     {"plan", understand, "Dry run: list the simulated effects and the expected cost", "MODEL... [OPTIONS]",
      "A dry run. Lists the effects that a run will simulate and why, and estimates patches, memory and time. It takes "
      "the options of patchlight solve that change these.",

@@ -41,6 +41,7 @@ ExitCode run(int count, const char* const* values) {
     ExitCode operator()(const SolveArguments& asked) const { return solve(asked); }
     ExitCode operator()(const RenderArguments& asked) const { return render(asked); }
     ExitCode operator()(const PlanArguments& asked) const { return plan(asked); }
+    ExitCode operator()(const AnnualArguments& asked) const { return annual(asked); }
     ExitCode operator()(const CrosscheckArguments& asked) const { return crosscheck(asked); }
     ExitCode operator()(const FormFactorArguments& asked) const { return form_factors(asked); }
     ExitCode operator()(const ComparisonArguments& asked) const { return compare_solvers(asked); }

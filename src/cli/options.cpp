@@ -194,6 +194,13 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   add_setting_options(command, options);
 }
 
+void add_model_options_without_light(CLI::App& command, ModelOptions& options) {
+  add_file_options(command, options);
+  add_choice_options(command, options);
+  add_list(command, "--set", options.settings);
+  add(command, "--ground", options.read.daylight.ground_reflectance, from_0_to_1);
+}
+
 void add_light_options(CLI::App& command, ModelOptions& options) {
   add_up_option(command, options.read.up);
   add_setting_options(command, options);

@@ -78,6 +78,7 @@ Finish add_init(CLI::App& tool);
 Finish add_solve(CLI::App& tool);
 Finish add_render(CLI::App& tool);
 Finish add_plan(CLI::App& tool);
+Finish add_annual(CLI::App& tool);
 Finish add_crosscheck(CLI::App& tool);
 Finish add_relight(CLI::App& tool);
 Finish add_form_factors(CLI::App& tool);
@@ -99,6 +100,9 @@ void add_file_options(CLI::App& command, ModelOptions& options);
 
 /// The same, and the options that change the model: materials, choice of faces, daylight.
 void add_model_options(CLI::App& command, ModelOptions& options);
+
+/// The options for files, units, choice of faces and materials, and --ground: all but those of an hour's light.
+void add_model_options_without_light(CLI::App& command, ModelOptions& options);
 
 /// Adds --set, --up, --sky, --sun, --ground and --weather.
 void add_light_options(CLI::App& command, ModelOptions& options);

@@ -132,15 +132,24 @@ double relative_radiance(const SkyModel& sky, const Vector& direction) {
   return std::max(0.0, gradation * indicatrix);
 }
 
-SkyModel sky_model(const Sky& sky, const Vector& up) {
-  assert(sky.horizontal_irradiance.size() > 0 || sky.zenith_radiance.size() > 0);
-  SkyModel model{
-      .kind = sky.kind, .up = up, .sun_direction = sky.sun_direction, .coefficients = {}, .colour = {}, .ground = {}};
+SkyModel relative_sky(const Sky& sky, const Vector& up) {
+  SkyModel model{.kind = sky.kind,
+                 .up = up,
+                 .sun_direction = sky.sun_direction,
+                 .coefficients = {},
+                 .colour = Spectrum::Ones(1),
+                 .ground = Spectrum::Zero(1)};
   if (sky.kind == SkyKind::cie_clear) model.coefficients = cie_clear_coefficients;
   if (sky.kind == SkyKind::perez) {
     const double sun_zenith_angle = std::acos(std::clamp(sky.sun_direction.dot(up), 0.0, 1.0));
     model.coefficients = perez_coefficients(sky.clearness, sky.brightness, sun_zenith_angle);
   }
+  return model;
+}
+
+SkyModel sky_model(const Sky& sky, const Vector& up) {
+  assert(sky.horizontal_irradiance.size() > 0 || sky.zenith_radiance.size() > 0);
+  SkyModel model = relative_sky(sky, up);
   // Outside its data the fit can have no light anywhere.
   if (!(relative_radiance(model, up) > 0 && horizontal_irradiance(model) > 0)) model.kind = SkyKind::uniform;
   if (sky.horizontal_irradiance.size() > 0) {

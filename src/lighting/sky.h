@@ -25,6 +25,10 @@ struct SkyModel {
 /// irradiance, to 1e-5 of it, or else its zenith radiance. A Perez sky whose fit has no light is uniform.
 SkyModel sky_model(const Sky& sky, const Vector& up);
 
+/// The same distribution with a radiance of 1 W/(m^2 sr) for a relative radiance of 1, over a black ground; its
+/// irradiance is left to the caller, who integrates by other means. May be dark outside the data of the fit.
+SkyModel relative_sky(const Sky& sky, const Vector& up);
+
 /// Relative radiance of the sky in a unit direction not below the horizon; never negative.
 double relative_radiance(const SkyModel& sky, const Vector& direction);
 

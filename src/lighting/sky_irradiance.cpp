@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -177,9 +178,18 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
 }
 
 SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
+  Spectrum irradiance = Spectrum::Zero(lighting.bands);
+  SkySeen seen = visit_sky(lighting, receiver, aim, samples, [&](const Vector& direction, const Spectrum& weight) {
+    irradiance += weight * radiance(*lighting.sky, direction);
+  });
+  return {std::move(irradiance), std::move(seen)};
+}
+
+SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples,
+                  const AtSky& at_sky) {
   const SkyRays rays = sky_rays(lighting, receiver, samples, aim);
-  SkyLight found{Spectrum::Zero(lighting.bands), {std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed}};
-  if (rays.places == 0) return found;
+  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed};
+  if (rays.places == 0) return seen;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
   const double scattered = static_cast<double>(rays.scattered) / static_cast<double>(rays.places);
   const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
@@ -193,17 +203,16 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
     const std::optional<std::size_t> aimed_at = rays.aimed_at[k];
     const bool is_aimed = aimed_at.has_value();
     if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
-    if (is_aimed) found.seen.through[*aimed_at] = 1;
+    if (is_aimed) seen.through[*aimed_at] = 1;
     const double over_hemisphere = scattered * rays.cosines[k] / std::numbers::pi;
     const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
     // Rays over the hemisphere that are so rare hardly ever get there, and their absence would not be noticed.
     const bool is_cut_off = at_openings > 8 * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;
     const double density = is_cut_off ? at_openings : over_hemisphere + at_openings;
-    found.irradiance += radiance(*lighting.sky, direction) * transmittance * (rays.cosines[k] / density);
+    at_sky(direction, transmittance * (rays.cosines[k] / (density * static_cast<double>(rays.places))));
   }
-  found.irradiance /= static_cast<double>(rays.places);
-  return found;
+  return seen;
 }
 
 Spectrum missed_sky(const Lighting& lighting, const SurfacePoint& at, const SkyAim& aim, const SkySeen& seen) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace patchlight {
@@ -30,6 +31,10 @@ struct SkySeen {
   std::size_t aimed = 0;              ///< rays towards openings
 };
 
+/// A ray that has got to the sky: its direction, and its weight per band, by which the radiance there counts in the mean
+/// irradiance of the receiver, sr.
+using AtSky = std::function<void(const Vector& direction, const Spectrum& weight)>;
+
 /// The light of the sky that rays find.
 struct SkyLight {
   Spectrum irradiance;
@@ -42,6 +47,10 @@ struct SkyLight {
 /// with holes alone one more for each of the first half. Where these are many times as dense they alone count (the
 /// cutoff heuristic of the same paper). Only the first kind finds light through a gap that is no opening.
 SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
+
+/// The rays of sky_irradiance() one by one: the mean irradiance is the sum of weight times radiance over all of them.
+SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples,
+                  const AtSky& at_sky);
 
 /// The light that one ray towards openings would bring to a point, W/m^2: the most, in each band, by any opening
 /// through which none of so many has got to the sky. As no hit of n rays means at most a few of n, this is how far off

@@ -140,6 +140,10 @@ SolvedMesh joined(const Run& run, const std::vector<LightColour>& colours, const
     for (std::size_t draw = 0; draw < part.correlated_errors.size(); ++draw)
       columns.put(into.correlated_errors[draw], part.correlated_errors[draw]);
     add_facts(into.transport, weight, part.transport);
+    for (SolvedTransport kept : part.transports) {
+      kept.bands = colours[k].bands;
+      into.transports.push_back(std::move(kept));
+    }
     const double tolerance = part.plan.solver.relative_error.value_or(default_tolerance);
     into.plan.solver.relative_error = k == 0 ? tolerance : std::min(tolerance, *into.plan.solver.relative_error);
   }

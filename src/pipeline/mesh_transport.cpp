@@ -58,7 +58,7 @@ MeshTransport transport_by_rays(RayTransportAndLight found, TransportFacts facts
   MeshTransport transport;
   transport.area = found.rows.area;
   transport.facts = std::move(facts);
-  transport.rays = std::make_unique<RaysWithPockets>(RayTransport(std::move(found.rows.halves)), highest);
+  transport.rays = std::make_shared<RaysWithPockets>(RayTransport(std::move(found.rows.halves)), highest);
   transport.light = std::move(found.light);
   transport.facts.row_sum = transport.rays->rays().row_sums();
   return transport;

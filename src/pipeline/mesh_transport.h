@@ -31,12 +31,12 @@ struct RawTransport {
 
 /// Light between the patches of a mesh: H = F B.
 struct MeshTransport {
-  std::unique_ptr<RowTransport> rows;  ///< null with rows of rays
+  std::shared_ptr<RowTransport> rows;  ///< null with rows of rays
   Eigen::VectorXd area;                ///< exposed, m^2
   TransportFacts facts;
   std::optional<Assembly> assembly;               ///< with error bars: exchange areas before closure
   std::optional<ClosedExchangeAreas> of_parents;  ///< with error bars: after closure, summed over parents
-  std::unique_ptr<RaysWithPockets> rays;          ///< with rows of rays, else null
+  std::shared_ptr<RaysWithPockets> rays;          ///< with rows of rays, else null
   std::optional<RayLight> light;                  ///< with rows of rays, the light of RayLight
 };
 

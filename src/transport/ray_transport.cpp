@@ -123,6 +123,56 @@ Eigen::VectorXd RayTransport::row_sums() const {
 
 namespace {
 
+// Calls use(i, j, F_ij) for all that the rows of a half have; a pair of patches may come several times.
+void for_form_factors(const RayRows& rows, const auto& use) {
+  for (PatchIndex i = 0; i + 1 < rows.first_hit.size(); ++i) {
+    for (std::uint64_t k = rows.first_hit[i]; k < rows.first_hit[i + 1]; ++k) use(i, rows.hits[k], rows.hit_weight[i]);
+    for (const RayEntry& entry : rows.entries_of(i)) use(i, entry.patch, static_cast<double>(entry.form_factor));
+  }
+}
+
+// Consecutive entries of one patch are added up.
+RayRows adjoint_rows(const RayRows& rows, const Eigen::VectorXd& area) {
+  const auto size = static_cast<std::size_t>(area.size());
+  // 1. How many entries each row has, and where they begin.
+  std::vector<std::uint64_t> next(size + 1, 0);
+  for_form_factors(rows, [&](PatchIndex, PatchIndex j, double) { ++next[j + 1]; });
+  for (std::size_t j = 0; j < size; ++j) next[j + 1] += next[j];
+  const std::vector<std::uint64_t> first = next;
+
+  // 2. The entries, in the order of i.
+  LargeArray<RayEntry> entries(first.back());
+  std::vector<std::uint64_t> end(first.begin(), first.end() - 1);
+  for_form_factors(rows, [&](PatchIndex i, PatchIndex j, double form_factor) {
+    if (!(area[j] > 0)) return;
+    const auto value = static_cast<float>(area[i] * form_factor / area[j]);
+    const bool is_next = end[j] == first[j] || entries[end[j] - 1].patch != i;
+    if (is_next)
+      entries[end[j]++] = {i, value};
+    else
+      entries[end[j] - 1].form_factor += value;
+  });
+
+  // 3. Without gaps.
+  RayRows adjoint;
+  adjoint.hit_weight.resize(size);
+  adjoint.first_hit.assign(size + 1, 0);
+  for (std::size_t j = 0; j < size; ++j) {
+    adjoint.first_entry.push_back(adjoint.entries.size());
+    for (std::uint64_t k = first[j]; k < end[j]; ++k) adjoint.entries.push_back(entries[k]);
+  }
+  adjoint.first_entry.push_back(adjoint.entries.size());
+  return adjoint;
+}
+
+}  // namespace
+
+RayTransport adjoint_of(const RayTransport& rays, const Eigen::VectorXd& area) {
+  return RayTransport({adjoint_rows(rays.rows(0), area), adjoint_rows(rays.rows(1), area)});
+}
+
+namespace {
+
 // Numbers for classes, in the order in which they are first met.
 class NumberedClasses {
  public:

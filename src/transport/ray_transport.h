@@ -49,6 +49,11 @@ class RayTransport : public TransportOperator {
   std::array<RayRows, 2> halves_;
 };
 
+/// The adjoint F* of F in the inner product sum_i A_i x_i y_i: F*_ji = A_i F_ij / A_j. As F is reciprocal but for its
+/// sampling errors, so is F*; sum_i A_i x_i (F y)_i = sum_j A_j (F* x)_j y_j holds up to the rounding of entries to
+/// floats. `area` in m^2; patches of area 0 have no row. O(rays) time and memory.
+RayTransport adjoint_of(const RayTransport& rays, const Eigen::VectorXd& area);
+
 /// A specular material on a path, and whether light was mirrored or transmitted there.
 struct SpecularMeeting {
   MaterialIndex material = 0;

@@ -153,68 +153,6 @@ SampledSpectrum of_cgats(const std::vector<TextLine>& lines, const std::filesyst
   return spectrum;
 }
 
-// Fields of the two kinds of lines in use, from 0 (EnergyPlus, Auxiliary Programs, chapter on weather data). The time
-// zone is in hours, east positive; an hour from 1 to 24 is the end of its interval.
-namespace location {
-enum Field : std::size_t { latitude = 6, longitude, time_zone };
-}
-namespace data {
-enum Field : std::size_t { year, month, day, hour, dew_point = 7, direct_normal = 14, diffuse_horizontal };
-}
-
-struct Line {
-  std::string where;
-  std::vector<std::string> fields;
-
-  double number(std::size_t field, const std::string& what) const {
-    const std::string text = field < fields.size() ? fields[field] : "";
-    const std::optional<double> value = finite_number(trimmed(text));
-    if (!value) {
-      throw InputError(where, "found '" + text + "' as field " + std::to_string(field + 1) + ", " + what +
-                                  "; expected a number, as in an EnergyPlus weather file");
-    }
-    return *value;
-  }
-};
-
-Line split(const TextLine& line, const std::string& file) {
-  const std::vector<std::string_view> fields = between_commas(line.text);
-  return {at_line(file, line.number), {fields.begin(), fields.end()}};
-}
-
-double irradiance(const Line& line, std::size_t field, const std::string& what) {
-  const double value = line.number(field, what);
-  if (value >= 0 && value < 9999) return value;  // 9999 marks a missing value
-  throw InputError(line.where, "the " + what + " of this hour is " + line.fields[field] +
-                                   "; expected W/m^2 from 0 to 9998. Choose an hour where it is known");
-}
-
-// Precipitable water in cm from the dew point in degrees Celsius. Perez et al. 1990, eq. 3.
-double precipitable_water(double dew_point) { return std::exp(0.07 * dew_point - 0.075); }
-
-double within(const Line& line, std::size_t field, double low, double high, const std::string& what) {
-  const double value = line.number(field, what);
-  if (value >= low && value <= high) return value;
-  throw InputError(line.where,
-                   what + " is " + shortest(value) + "; expected " + shortest(low) + " to " + shortest(high));
-}
-
-WeatherHour weather_of(const Line& place, const Line& line, const Instant& local_time) {
-  WeatherHour weather;
-  weather.place = {within(place, location::latitude, -90, 90, "the latitude in degrees"),
-                   within(place, location::longitude, -180, 180, "the longitude in degrees")};
-  const double zone = within(place, location::time_zone, -14, 14, "the time zone in hours");
-  weather.middle = local_time;
-  weather.middle.year = static_cast<int>(within(line, data::year, 1, 9999, "the year"));
-  weather.middle.hour = local_time.hour + 0.5 - zone;
-  weather.solar.direct_normal = irradiance(line, data::direct_normal, "direct normal irradiance");
-  weather.solar.diffuse_horizontal = irradiance(line, data::diffuse_horizontal, "diffuse horizontal irradiance");
-  weather.solar.day_of_year = day_of_year(weather.middle);
-  const double dew_point = within(line, data::dew_point, -100, 100, "the dew point in degrees Celsius");
-  if (dew_point < 99.9) weather.solar.precipitable_water = precipitable_water(dew_point);
-  return weather;
-}
-
 }  // namespace
 
 SensorGroup parse_points(std::string_view text, const std::filesystem::path& file, double metres_per_unit) {
@@ -257,36 +195,6 @@ SampledSpectrum parse_spectrum(std::string_view text, const std::filesystem::pat
 
 SampledSpectrum read_spectrum(const std::filesystem::path& file) {
   return parse_spectrum(read_text(file, file.string(), "the spectrum"), file);
-}
-
-WeatherHour parse_epw(const std::string& text, const std::string& file, const Instant& local_time) {
-  Line place;
-  for (const TextLine& text_line : logical_lines(text)) {
-    const Line line = split(text_line, file);
-    if (line.fields[0] == "LOCATION") place = line;
-    if (!finite_number(trimmed(line.fields[0])) || line.fields.size() <= data::hour) continue;
-    if (place.fields.empty()) {
-      throw InputError(line.where, "found weather before a line LOCATION; expected an EnergyPlus weather file");
-    }
-    if (line.number(data::month, "the month") != local_time.month) continue;
-    if (line.number(data::day, "the day") != local_time.day) continue;
-    if (line.number(data::hour, "the hour") != local_time.hour + 1) continue;
-    return weather_of(place, line, local_time);
-  }
-  throw InputError(file, "found no weather for month " + std::to_string(local_time.month) + ", day " +
-                             std::to_string(local_time.day) + ", hour " +
-                             std::to_string(static_cast<int>(local_time.hour)) +
-                             "; expected an hour from 0 to 23 of a day that the file has");
-}
-
-WeatherHour read_epw(const std::filesystem::path& file, int month, int day, int hour) {
-  return parse_epw(read_text(file, file.string(), "weather file"), file.string(),
-                   {2000, month, day, static_cast<double>(hour)});
-}
-
-Daylight daylight_of(const WeatherHour& weather, const Vector& up, const Vector& north, Eigen::Index bands) {
-  const Vector sun = direction_to(solar_position(weather.place, weather.middle), up, north);
-  return measured_daylight(weather.solar, sun, up, bands);
 }
 
 }  // namespace patchlight

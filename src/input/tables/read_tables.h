@@ -1,8 +1,11 @@
 #pragma once
 
+#include "patchlight/base/diagnostics.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/scene/daylight.h"
+#include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
+#include "patchlight/scene/year.h"
 
 #include "light/solar_position.h"
 #include "scene/photometric_web.h"
@@ -10,6 +13,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace patchlight {
 
@@ -44,6 +48,25 @@ WeatherHour read_epw(const std::filesystem::path& file, int month, int day, int 
 
 /// The same from a text; `file` is for messages.
 WeatherHour parse_epw(const std::string& text, const std::string& file, const Instant& local_time);
+
+/// All hours of a weather file, from the first of January; 8760, as a leap day is left out.
+struct WeatherYear {
+  Place place;
+  double time_zone = 0;  ///< hours, east positive
+  std::string file;
+  std::vector<WeatherHour> hours;
+  Diagnostics notes;  ///< a leap day; direct sunlight while the sun is below the horizon
+};
+
+/// Reads a whole year. Refuses missing, repeated and misplaced hours, several periods or records per hour, numbers out
+/// of range, and a time zone that is far from the longitude. \throws InputError naming the file and line.
+WeatherYear read_epw_year(const std::filesystem::path& file);
+
+/// The same from a text; `file` is for messages.
+WeatherYear parse_epw_year(const std::string& text, const std::string& file);
+
+/// Sun, sky and ground of every hour for a scene, each as with the hour of read_epw().
+Year daylight_of(const WeatherYear& weather, const Scene& scene, double ground_reflectance);
 
 /// Sun and Perez sky of that hour, with the sun at its position in the middle of the hour; see scene/daylight.h.
 Daylight daylight_of(const WeatherHour& weather, const Vector& up, const Vector& north, Eigen::Index bands);

@@ -1,0 +1,45 @@
+#include "annual/adjoint_light.h"
+
+#include "solve/pockets.h"
+#include "solve/scattering.h"
+
+#include <limits>
+
+namespace patchlight {
+namespace {
+
+// F itself where it is reciprocal; else it is by rows of rays.
+std::shared_ptr<const TransportOperator> adjoint_of(const SolvedTransport& solved) {
+  if (solved.light->is_reciprocal()) return solved.light;
+  const auto& with_pockets = dynamic_cast<const RaysWithPockets&>(*solved.light);
+  return std::make_shared<RayTransport>(adjoint_of(with_pockets.rays(), solved.area));
+}
+
+// An observer of solutions that are not those of the run.
+Observer without_iterates(const Observer& observer) {
+  if (!observer) return {};
+  return [&observer](const Progress& progress) {
+    return observer({.stage = progress.stage, .fraction = progress.fraction});
+  };
+}
+
+}  // namespace
+
+AdjointLight::AdjointLight(const SolvedTransport& solved) : solved_(solved), adjoint_(adjoint_of(solved)) {}
+
+Field AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
+                            const Observer& observer) const {
+  const Eigen::ArrayXd area = solved_.area.array();
+  const Scattering scattering = of_bands(solved_.scattering, bands);
+  const Eigen::ArrayXd per_area = (area > 0).select(area.inverse(), 0.0);
+  const RadiosityProblem problem{scattering, scattering.adjoint(seen.colwise() * per_area), solved_.area};
+  const SolverOptions options{.solver = usual_solver(*adjoint_, problem),
+                              .relative_error = tolerance,
+                              .max_iterations = 200,
+                              .restart = 12,
+                              .largest_row_sum = std::numeric_limits<double>::infinity(),
+                              .patch_bounds = false};
+  return solve(*adjoint_, problem, options, without_iterates(observer)).radiosity.colwise() * area;
+}
+
+}  // namespace patchlight
