@@ -11,7 +11,6 @@
 #include "base/tolerances.h"
 #include "gather/sensor_places.h"
 #include "lighting/mirror_paths.h"
-#include "lighting/shades.h"
 #include "pipeline/run.h"
 #include "pipeline/world.h"
 #include "plan/choose_storage.h"
@@ -190,10 +189,7 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   const Scene& scene = of_year.scene;
   const SkyCoefficientOptions sampling{options.sky_samples, simulation.plan.assembly.seed};
   StraightLight light{SkyDivisions(options.sky_division, scene.up, scene.north), suns_of(year, *read), {}, {}};
-  const SkyDivisions coarse(1, scene.up, scene.north);
   light.sky_on_patches = sky_coefficients(world.lighting(), simulation.mesh, light.divisions, sampling, observer);
-  const std::vector<SparseCoefficients> visible =
-      sky_coefficients(world.lighting(), simulation.mesh, coarse, sampling, observer);
   const auto count = static_cast<Eigen::Index>(points.size());
   const auto suns = static_cast<Eigen::Index>(light.suns.hours.size());
   AtSensors at{Eigen::MatrixXf::Zero(count, static_cast<Eigen::Index>(light.divisions.size())),
@@ -202,12 +198,12 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   for (std::size_t band = 0; band < sky_at_sensors.size(); ++band)
     at.by_sky += static_cast<float>(scene.bands[band].luminous_weight) * Eigen::MatrixXf(sky_at_sensors[band]);
   clock.finish(Stage::direct_light);
-  const auto sun_at_sensors = sunlight_at(world.sensor_lighting(), points, light.suns.directions, observer);
+  const auto sun_at_sensors = sunlight_at({world.sensor_lighting(), world.sensor_scene(), world.tracing()}, points, light.suns.directions, observer);
   for (std::size_t band = 0; band < sun_at_sensors.size(); ++band)
     at.by_sun_straight += static_cast<float>(of_year.sun_weights[band]) * sun_at_sensors[band].transpose();
-  const Shades shades(world.planned_scene(), world.tracing().coverings(), world.lighting().paths.optics());
-  light.sun_on_patches = sunlight_on(world.lighting(), shades, simulation.mesh, visible[0], coarse,
-                                     light.suns.directions, sampling.seed, observer);
+  light.sun_on_patches =
+      sunlight_on({world.lighting(), world.planned_scene(), world.tracing()}, simulation.mesh, light.sky_on_patches[0],
+                  light.divisions, light.suns.directions, sampling.seed, observer);
   clock.finish(Stage::trace_paths);
 
   // 3. All reflections of both.

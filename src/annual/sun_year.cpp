@@ -3,6 +3,8 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "lighting/direct_irradiance.h"
+#include "lighting/mirror_paths.h"
 #include "lighting/shades.h"
 #include "scene/light_place.h"
 
@@ -10,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <numbers>
 
 namespace patchlight {
 namespace {
@@ -20,31 +24,41 @@ struct OfSun {
   Spectrum share;
 };
 
-// The suns of each division, and for each division the ones that touch it with itself.
+// The suns of each division, and the divisions with suns that touch each.
 struct SunsInDivisions {
   std::vector<std::vector<std::uint32_t>> suns;
   std::vector<std::vector<std::size_t>> around;
 };
 
-SunsInDivisions suns_in(const SkyDivisions& divisions, std::span<const Vector> suns) {
-  SunsInDivisions found{std::vector<std::vector<std::uint32_t>>(divisions.size()),
-                        std::vector<std::vector<std::size_t>>(divisions.size())};
-  for (std::size_t k = 0; k < suns.size(); ++k)
-    found.suns[divisions.at(suns[k])].push_back(static_cast<std::uint32_t>(k));
-  constexpr int across = 6;
-  const double near = std::cos(5 * 3.14159265358979 / 180);
-  std::vector<std::vector<Vector>> places(divisions.size());
-  for (std::size_t d = 1; d < divisions.size(); ++d) places[d] = divisions.directions(d, across);
+std::vector<std::vector<std::uint32_t>> suns_of_each(const SkyDivisions& divisions, std::span<const Vector> suns) {
+  std::vector<std::vector<std::uint32_t>> found(divisions.size());
+  for (std::size_t k = 0; k < suns.size(); ++k) found[divisions.at(suns[k])].push_back(static_cast<std::uint32_t>(k));
+  return found;
+}
+
+// Places of a coarse division are about two degrees apart, so that those of neighbors are nearer than five.
+SunsInDivisions suns_in(const SkyDivisions& coarse, std::span<const Vector> suns) {
+  SunsInDivisions found{suns_of_each(coarse, suns), std::vector<std::vector<std::size_t>>(coarse.size())};
+  const double near = std::cos(5 * std::numbers::pi / 180);
+  std::vector<std::vector<Vector>> places(coarse.size());
+  for (std::size_t d = 1; d < coarse.size(); ++d) places[d] = coarse.directions(d, 6);
   const auto touch = [&](std::size_t a, std::size_t b) {
     return std::ranges::any_of(places[a], [&](const Vector& one) {
       return std::ranges::any_of(places[b], [&](const Vector& other) { return one.dot(other) > near; });
     });
   };
-  for (std::size_t a = 1; a < divisions.size(); ++a) {
+  for (std::size_t a = 1; a < coarse.size(); ++a) {
     if (found.suns[a].empty()) continue;
-    for (std::size_t b = 1; b < divisions.size(); ++b)
+    for (std::size_t b = 1; b < coarse.size(); ++b)
       if (a == b || touch(a, b)) found.around[b].push_back(a);
   }
+  return found;
+}
+
+// The coarse division around the middle of each fine one.
+std::vector<std::size_t> coarse_of(const SkyDivisions& coarse, const SkyDivisions& fine) {
+  std::vector<std::size_t> found = {0};
+  for (std::size_t d = 1; d < fine.size(); ++d) found.push_back(coarse.at(fine.directions(d, 1).front()));
   return found;
 }
 
@@ -59,6 +73,41 @@ Spectrum share_by_rays(const Lighting& lighting, const Receiver& receiver, const
   }
   if (segments.empty()) return Spectrum::Zero(lighting.bands);
   return lighting.paths.transmittance(segments).colwise().mean();
+}
+
+// A lighting by one sun of normal irradiance 1 alone, with the mirrors by which its light goes.
+Lighting lighting_of_sun(const SunWays& ways, const Vector& direction) {
+  Lighting lighting = ways.lighting;
+  lighting.sky.reset();
+  lighting.openings.clear();
+  lighting.sun = Sun{direction, Spectrum::Ones(lighting.bands)};
+  lighting.mirrors = std::make_shared<const Mirrors>(ways.scene, ways.tracing, lighting);
+  return lighting;
+}
+
+// Light over mirrors alone. A patch takes four places.
+const LightingOptions in_mirrors_alone{.mirrored_samples = 4, .only_in_mirrors = true};
+
+// Adds the light of suns that gets to patches over mirrors: that of all suns of a division from their mean direction.
+void add_over_mirrors(const SunWays& ways, const PatchMesh& mesh, const SkyDivisions& divisions,
+                      std::span<const Vector> suns, const Observer& observer,
+                      std::vector<std::vector<OfSun>>& of_patches) {
+  const std::vector<std::vector<std::uint32_t>> in = suns_of_each(divisions, suns);
+  std::vector<Field> of_division(in.size());
+  parallel_for(in.size(), Stage::direct_light, observer, [&](std::size_t d) {
+    if (in[d].empty()) return;
+    Vector sum = Vector::Zero();
+    for (const std::uint32_t sun : in[d]) sum += suns[sun];
+    const Lighting by_sun = lighting_of_sun(ways, sum.normalized());
+    if (by_sun.mirrors->paths.chains().empty()) return;
+    of_division[d] = direct_irradiance(by_sun, mesh, in_mirrors_alone).irradiance;
+  });
+  for (std::size_t d = 0; d < in.size(); ++d)
+    for (Eigen::Index patch = 0; patch < of_division[d].rows(); ++patch) {
+      if (!(of_division[d].row(patch) > 0).any()) continue;
+      for (const std::uint32_t sun : in[d])
+        of_patches[static_cast<std::size_t>(patch)].push_back({sun, of_division[d].row(patch)});
+    }
 }
 
 std::vector<SparseSunlight> matrices_of(const std::vector<std::vector<OfSun>>& of_patches, std::size_t suns,
@@ -81,11 +130,12 @@ std::vector<SparseSunlight> matrices_of(const std::vector<std::vector<OfSun>>& o
 
 }  // namespace
 
-std::vector<Eigen::MatrixXf> sunlight_at(const Lighting& lighting, std::span<const SurfacePoint> points,
+std::vector<Eigen::MatrixXf> sunlight_at(const SunWays& ways, std::span<const SurfacePoint> points,
                                          std::span<const Vector> suns, const Observer& observer) {
-  const auto rows = static_cast<Eigen::Index>(suns.size());
-  std::vector<Eigen::MatrixXf> all(static_cast<std::size_t>(lighting.bands),
-                                   Eigen::MatrixXf::Zero(rows, static_cast<Eigen::Index>(points.size())));
+  const Lighting& lighting = ways.lighting;
+  std::vector<Eigen::MatrixXf> all(
+      static_cast<std::size_t>(lighting.bands),
+      Eigen::MatrixXf::Zero(static_cast<Eigen::Index>(suns.size()), static_cast<Eigen::Index>(points.size())));
   parallel_for(points.size(), Stage::direct_light, observer, [&](std::size_t k) {
     const SurfacePoint& at = points[k];
     std::vector<Segment> segments;
@@ -99,25 +149,38 @@ std::vector<Eigen::MatrixXf> sunlight_at(const Lighting& lighting, std::span<con
     for (std::size_t n = 0; n < of_sun.size(); ++n) {
       const double cosine = at.normal.dot(suns[of_sun[n]]);
       for (std::size_t band = 0; band < all.size(); ++band)
-        all[band](static_cast<Eigen::Index>(of_sun[n]), static_cast<Eigen::Index>(k)) = static_cast<float>(
-            cosine * share(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(band)));
+        all[band](static_cast<Eigen::Index>(of_sun[n]), static_cast<Eigen::Index>(k)) =
+            static_cast<float>(cosine * share(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(band)));
     }
+  });
+  if (!lighting.mirrors) return all;
+  parallel_for(suns.size(), Stage::direct_light, observer, [&](std::size_t s) {
+    const Lighting by_sun = lighting_of_sun(ways, suns[s]);
+    if (by_sun.mirrors->paths.chains().empty()) return;
+    const Field more = direct_irradiance(by_sun, points, in_mirrors_alone).irradiance;
+    for (std::size_t band = 0; band < all.size(); ++band)
+      all[band].row(static_cast<Eigen::Index>(s)) +=
+          more.col(static_cast<Eigen::Index>(band)).transpose().cast<float>().matrix();
   });
   return all;
 }
 
-std::vector<SparseSunlight> sunlight_on(const Lighting& lighting, const Shades& shades, const PatchMesh& mesh,
-                                        const SparseCoefficients& visible, const SkyDivisions& divisions,
-                                        std::span<const Vector> suns, std::uint64_t seed, const Observer& observer) {
-  const SunsInDivisions in = suns_in(divisions, suns);
+std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
+                                        const SkyDivisions& divisions, std::span<const Vector> suns, std::uint64_t seed,
+                                        const Observer& observer) {
+  const Lighting& lighting = ways.lighting;
+  const Shades shades(ways.scene, ways.tracing.coverings(), lighting.paths.optics());
+  const SkyDivisions coarse = divisions.cut(1);
+  const SunsInDivisions in = suns_in(coarse, suns);
+  const std::vector<std::size_t> coarse_division = coarse_of(coarse, divisions);
   std::vector<std::vector<OfSun>> of_patches(mesh.size());
   parallel_for(mesh.size(), Stage::direct_light, observer, [&](std::size_t k) {
     const auto patch = static_cast<PatchIndex>(k);
     const Receiver receiver = receiver_of(mesh, patch);
-    std::vector<std::uint8_t> takes_part(divisions.size(), 0);
-    for (SparseCoefficients::InnerIterator seen(visible, static_cast<Eigen::Index>(k)); seen; ++seen)
-      for (const std::size_t d : in.around[static_cast<std::size_t>(seen.col())]) takes_part[d] = 1;
-    for (std::size_t d = 1; d < divisions.size(); ++d) {
+    std::vector<std::uint8_t> takes_part(coarse.size(), 0);
+    for (SparseCoefficients::InnerIterator seen(sky, static_cast<Eigen::Index>(k)); seen; ++seen)
+      for (const std::size_t d : in.around[coarse_division[static_cast<std::size_t>(seen.col())]]) takes_part[d] = 1;
+    for (std::size_t d = 1; d < coarse.size(); ++d) {
       if (takes_part[d] == 0) continue;
       for (const std::uint32_t sun : in.suns[d]) {
         const double cosine = mesh.normal[patch].dot(suns[sun]);
@@ -129,6 +192,7 @@ std::vector<SparseSunlight> sunlight_on(const Lighting& lighting, const Shades& 
       }
     }
   });
+  if (lighting.mirrors) add_over_mirrors(ways, mesh, divisions, suns, observer, of_patches);
   return matrices_of(of_patches, suns.size(), lighting.bands);
 }
 

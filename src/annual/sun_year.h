@@ -13,19 +13,26 @@
 
 namespace patchlight {
 
-/// The straight sunlight of a patch or a point, per position of the sun (row) and receiver (column), of one band.
+/// The sunlight of a patch or a point, per position of the sun (row) and receiver (column), of one band.
 using SparseSunlight = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
-/// The transmittance of the ways from points to the sun times the cosine, per band: the irradiance by a normal
-/// irradiance of 1. Rows are positions of the sun. O(points x suns). \throws Canceled.
-std::vector<Eigen::MatrixXf> sunlight_at(const Lighting& lighting, std::span<const SurfacePoint> points,
+/// What the light of all suns goes through.
+struct SunWays {
+  const Lighting& lighting;  ///< of any sky
+  const Scene& scene;
+  const Tracing& tracing;
+};
+
+/// The irradiance at points by a normal irradiance of 1 from each sun (row), per band: straight through panes, and over
+/// mirrors where reflections are followed. O(points x suns x chains of mirrors). \throws Canceled.
+std::vector<Eigen::MatrixXf> sunlight_at(const SunWays& ways, std::span<const SurfacePoint> points,
                                          std::span<const Vector> suns, const Observer& observer);
 
-/// The same as means over patches, by the outlines of all shadows. `visible` has the patches' coefficients of
-/// `divisions`, coarse ones: a patch takes part at suns that stand in a division from which it gets light, or beside
-/// one.
-std::vector<SparseSunlight> sunlight_on(const Lighting& lighting, const Shades& shades, const PatchMesh& mesh,
-                                        const SparseCoefficients& visible, const SkyDivisions& divisions,
-                                        std::span<const Vector> suns, std::uint64_t seed, const Observer& observer);
+/// The same as means over patches, by the outlines of all shadows. `sky` has the patches' coefficients of `divisions`:
+/// a patch takes part at suns that stand near a division from which it gets light. Over mirrors the suns of a division
+/// stand together in their mean direction. \throws Canceled.
+std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
+                                        const SkyDivisions& divisions, std::span<const Vector> suns, std::uint64_t seed,
+                                        const Observer& observer);
 
 }  // namespace patchlight

@@ -93,6 +93,12 @@ struct SkyInMirrors {
   std::vector<double> probabilities = {};  // SpecularAim::probabilities_from() the middle
 };
 
+SkyInMirrors sky_in_mirrors(const Lighting& lighting, const Receiver& receiver) {
+  SkyInMirrors how{.is_point = receiver.is_point()};
+  if (lighting.sky) how.probabilities = lighting.mirrors->aim.probabilities_from(receiver.place(0.5, 0.5));
+  return how;
+}
+
 struct MirrorSampler {
   const LightSampler& lights;
   const Lighting& lighting = lights.lighting();
@@ -101,7 +107,6 @@ struct MirrorSampler {
   std::vector<WantedChain> all_chains() const;
   std::vector<WantedChain> chains_to(const Ball& ball, std::span<const WantedChain> among) const;
   OverChains over_chains(std::span<const WantedChain> chains, std::span<const SampledPlace> places) const;
-  Spectrum of_sky(std::span<const SampledPlace> places, const SkyInMirrors& how, std::uint32_t key) const;
   std::vector<SampledPlace> places_on(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort) const;
   OverChains replicates_at(const Receiver& receiver, std::uint32_t key, const MirrorEffort& effort,
                            std::span<const WantedChain> among) const;
@@ -175,13 +180,12 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
   return sums;
 }
 
-// The sum over places of one replicate: sky that paths see after one or more reflections. A point is one place, with
-// all of the samples. All places share the probabilities of the middle, which cost more than the rays; places that see
-// other targets find them by the rays that are distributed as the cosine.
-Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, const SkyInMirrors& how, std::uint32_t key) const {
-  Spectrum sum = Spectrum::Zero(lighting.bands);
+// Sky that paths from places of one replicate see after one or more reflections: its mean irradiance. A point is one
+// place, with all of the samples. All places share the probabilities of the middle, which cost more than the rays;
+// places that see other targets find them by the rays that are distributed as the cosine.
+void visit_sky_from(const Lighting& lighting, std::span<const SampledPlace> places, const SkyInMirrors& how,
+                    std::uint32_t key, const AtSky& at_sky) {
   const auto& [paths, aim, occluder] = *lighting.mirrors;
-  if (!lighting.sky) return sum;
   const std::size_t each = how.is_point ? places.size() : 2;
   std::vector<Ray> rays;
   std::vector<double> weights;
@@ -196,16 +200,14 @@ Spectrum MirrorSampler::of_sky(std::span<const SampledPlace> places, const SkyIn
     if (probabilities.empty() && aim.has_all_faces()) continue;  // no reflection can be seen
     for (const auto& [ray, weight] : aim.rays(places[k].at, probabilities, samples)) {
       rays.push_back(ray);
-      weights.push_back(weight);
+      weights.push_back(how.is_point ? weight : weight / static_cast<double>(places.size()));
     }
   }
   walk(occluder, *lighting.paths.optics(), std::move(rays), {.seed = key},
        [&](const SpecularPath& path, const std::optional<Hit>& hit) {
-         if (!hit && path.reflections > 0)
-           sum += weights[path.start] * path.throughput * radiance(*lighting.sky, path.ray.direction);
+         if (!hit && path.reflections > 0) at_sky(path.ray.direction, weights[path.start] * path.throughput);
          return Continuation::specular;
        });
-  return (how.is_point ? static_cast<double>(places.size()) : 1.0) * sum;
 }
 
 // Those over which no other polygon lies; replicates without such a place are left out of the numbers.
@@ -233,13 +235,15 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
   if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), unfollowed};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
   OverChains found = over_chains(chains, places_for_chains(places, chains.size()));
-  SkyInMirrors to_sky{.is_point = receiver.is_point()};
-  if (lighting.sky) to_sky.probabilities = lighting.mirrors->aim.probabilities_from(middle);
+  const SkyInMirrors to_sky = sky_in_mirrors(lighting, receiver);
   const std::span all(places);
   for (auto first = all.begin(); first != all.end();) {
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
-    const auto sky_key = hash({key, static_cast<std::uint64_t>(first->replicate)});
-    found.light.row(first->replicate) += of_sky({first, last}, to_sky, sky_key) / static_cast<double>(last - first);
+    if (lighting.sky)
+      visit_sky_from(lighting, {first, last}, to_sky, hash({key, static_cast<std::uint64_t>(first->replicate)}),
+                     [&](const Vector& direction, const Spectrum& weight) {
+                       found.light.row(first->replicate) += weight * radiance(*lighting.sky, direction);
+                     });
     first = last;
   }
   found.beyond.rowwise() += unfollowed;
@@ -310,8 +314,21 @@ DirectIrradiance irradiance_in_mirrors(const LightSampler& lights, std::span<con
                                        const LightingOptions& options, const Observer& observer) {
   const auto point = [&](std::size_t k) { return receiver_of(points[k]); };
   const auto all = [](std::size_t) { return 1.0; };
-  const auto doublings = [](std::size_t) -> unsigned { return doublings_at_points; };
-  return in_mirrors_at(lights, {points.size(), point, all, doublings, doublings_at_points}, options, observer);
+  // All samples of a light without extent are alike at a point.
+  const bool are_delta = std::ranges::all_of(lights.sources(), &LightSource::is_delta) && !lights.lighting().sky;
+  const int most = are_delta ? 0 : doublings_at_points;
+  const auto doublings = [most](std::size_t) { return static_cast<unsigned>(most); };
+  return in_mirrors_at(lights, {points.size(), point, all, doublings, most}, options, observer);
+}
+
+void visit_sky_in_mirrors(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, std::uint32_t key,
+                          const AtSky& at_sky) {
+  std::vector<SampledPlace> places;
+  for (const auto& sample : shifted(samples, key)) {
+    const SurfacePoint at = receiver.place(sample[0], sample[1]);
+    if (!is_covered(lighting, receiver, at)) places.push_back({at, sample, 0});
+  }
+  if (!places.empty()) visit_sky_from(lighting, places, sky_in_mirrors(lighting, receiver), key, at_sky);
 }
 
 }  // namespace patchlight

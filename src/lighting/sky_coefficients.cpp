@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/sampling.h"
 #include "base/streams.h"
+#include "lighting/irradiance_in_mirrors.h"
 #include "lighting/sky_irradiance.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <utility>
 
 namespace patchlight {
 namespace {
@@ -75,6 +77,14 @@ std::vector<SparseCoefficients> coefficients_of(const Lighting& lighting, std::s
     visit_sky(lighting, receiver, aim, samples, [&](const Vector& direction, const Spectrum& weight) {
       rows[k].push_back({divisions.at(direction), weight});
     });
+    if (lighting.mirrors) {
+      const auto fewer = std::max<std::size_t>(4, samples.size() / 8);
+      visit_sky_in_mirrors(lighting, receiver, SamplePoints(points).first(fewer),
+                           hash({options.seed, k, stream::shift_at_receiver}),
+                           [&](const Vector& direction, const Spectrum& weight) {
+                             rows[k].push_back({divisions.at(direction), weight});
+                           });
+    }
     rows[k] = joined(std::move(rows[k]));
   });
   return matrices_of(rows, divisions.size(), lighting.bands);

@@ -23,9 +23,10 @@ struct SkyCoefficientOptions {
   std::uint64_t seed = 1;
 };
 
-/// The straight irradiance by a radiance of 1 W/(m^2 sr) in each division of the sky, W/m^2: one matrix for each band.
+/// The irradiance by a radiance of 1 W/(m^2 sr) in each division of the sky, W/m^2: one matrix for each band.
 /// The rays are those of sky_irradiance(), each counted in the division to which it gets, so that one pass serves all
-/// divisions, and the sum over these is the irradiance under a uniform sky. Light over mirrors is left out. O(receivers
+/// divisions, and the sum over these is the irradiance under a uniform sky. Where reflections are followed, light
+/// over mirrors and clear faces is added. O(receivers
 /// x samples). \throws Canceled.
 std::vector<SparseCoefficients> sky_coefficients(const Lighting& lighting, const PatchMesh& mesh,
                                                  const SkyDivisions& divisions, const SkyCoefficientOptions& options,

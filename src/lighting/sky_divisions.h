@@ -18,6 +18,9 @@ class SkyDivisions {
   /// `up` and `north` are unit vectors at right angles.
   SkyDivisions(int factor, const Vector& up, const Vector& north);
 
+  /// The same sky cut by another factor.
+  SkyDivisions cut(int factor) const { return SkyDivisions(factor, up_, north_); }
+
   /// With the ground.
   std::size_t size() const { return first_of_row_.back() + 1; }
   /// The division of a unit direction.
