@@ -6,17 +6,36 @@
 
 namespace patchlight {
 
-Field seen_patches(const HemisphereRays& hemisphere, const PatchMesh& mesh, std::span<const Sensor> sensors,
-                   Eigen::Index bands, std::uint32_t each, double tolerance) {
+std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occluder, const Observer& observer) {
+  const PlaneFits fits(mesh, occluder);
+  std::vector<PatchPlane> planes(mesh.size());
+  parallel_for(mesh.size(), Stage::gather, observer, [&](std::size_t k) {
+    const auto j = static_cast<PatchIndex>(k);
+    planes[k].around = fits.in_sight(j, fits.patches_around(j));
+    planes[k].slopes = fits.slopes(j, planes[k].around);
+  });
+  return planes;
+}
+
+Field seen_patches(const HemisphereRays& hemisphere, const PatchMesh& mesh, std::span<const PatchPlane> planes,
+                   std::span<const Sensor> sensors, Eigen::Index bands, std::uint32_t each, double tolerance) {
   Field seen = Field::Zero(mesh.size(), static_cast<Eigen::Index>(sensors.size()) * bands);
   parallel_for(sensors.size(), [&](std::size_t k) {
     const Sensor& sensor = sensors[k];
     const auto first = static_cast<Eigen::Index>(k) * bands;
+    const auto add = [&](PatchIndex patch, const Spectrum& weight) { seen.row(patch).segment(first, bands) += weight; };
     for (const HemisphereHit& hit : hemisphere.hits(sensor, each, 0).all) {
       // A sensor on a face does not see the patches of that face.
       const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
       if (!hit.is_mirrored && height <= tolerance) continue;
-      seen.row(hit.patch).segment(first, bands) += hit.weight;
+      add(hit.patch, hit.weight);
+      const PatchPlane& plane = planes[hit.patch];
+      const Vector way = hit.point - mesh.centroid[hit.patch];
+      for (std::size_t n = 0; n < plane.around.size(); ++n) {
+        const double share = way.dot(plane.slopes.col(static_cast<Eigen::Index>(n)));
+        add(plane.around[n], share * hit.weight);
+        add(hit.patch, -share * hit.weight);
+      }
     }
   });
   return seen;

@@ -124,12 +124,13 @@ void add_all_reflected(const Simulation& simulation, const YearScene& year, cons
   const auto each = static_cast<std::uint32_t>(options.rays / most_replicates);
   const double tolerance = tolerance_of_shapes / occluder.frame().scale;
   const Eigen::ArrayXd factor = over_exposed_part(simulation.mesh, simulation.transport.lost, simulation.problem.area);
+  const std::vector<PatchPlane> planes = planes_of(simulation.mesh, occluder, observer);
   std::vector<AdjointLight> adjoints;
   for (const SolvedTransport& solved : simulation.transports) adjoints.emplace_back(solved);
   for (std::size_t begin = 0; begin < sensors.size(); begin += sensors_at_once) {
     const Block block{begin, std::min(sensors.size(), begin + sensors_at_once)};
     if (observer && !observer({.stage = Stage::solve, .fraction = static_cast<double>(begin) / static_cast<double>(sensors.size())})) throw Canceled();
-    const Field seen = seen_patches(hemisphere, simulation.mesh, std::span(sensors).subspan(begin, block.end - begin),
+    const Field seen = seen_patches(hemisphere, simulation.mesh, planes, std::span(sensors).subspan(begin, block.end - begin),
                                     bands, each, tolerance);
     for (std::size_t t = 0; t < adjoints.size(); ++t) {
       const SolvedTransport& solved = simulation.transports[t];

@@ -5,12 +5,12 @@
 #include "base/streams.h"
 #include "base/tolerances.h"
 #include "form_factor/point_polygon.h"
+#include "gather/planes.h"
 #include "gather/sources.h"
 #include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "visibility/occluder.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,7 +52,7 @@ double variance_over(const PatchMesh& mesh, PatchIndex j, const Vector& gradient
 class Planes {
  public:
   Planes(const PatchMesh& mesh, const FieldView& values, const Occluder& occluder)
-      : mesh_(mesh), values_(values), occluder_(occluder), at_vertex_(mesh) {}
+      : mesh_(mesh), values_(values), fits_(mesh, occluder) {}
 
   std::vector<PatchIndex> patches_around(PatchIndex j) const;
   Gradient fitted(PatchIndex j, std::span<const PatchIndex> around) const;
@@ -60,12 +60,10 @@ class Planes {
 
  private:
   bool are_about_equal(PatchIndex i, PatchIndex j) const;
-  std::vector<PatchIndex> in_sight(PatchIndex j, std::span<const PatchIndex> others) const;
 
   const PatchMesh& mesh_;
   const FieldView& values_;
-  const Occluder& occluder_;
-  PatchesAtVertices at_vertex_;
+  PlaneFits fits_;
 };
 
 // Such patches are taken to see each other.
@@ -75,54 +73,23 @@ bool Planes::are_about_equal(PatchIndex i, PatchIndex j) const {
   return (larger <= 1.25 * smaller).all();
 }
 
-// Those that nothing hides from this one, a tenth of their distance above the polygon.
-std::vector<PatchIndex> Planes::in_sight(PatchIndex j, std::span<const PatchIndex> others) const {
-  std::vector<Segment> segments;
-  for (const PatchIndex i : others) {
-    const Vector up = 0.1 * (mesh_.centroid[i] - mesh_.centroid[j]).norm() * mesh_.normal[j];
-    segments.push_back({mesh_.centroid[j] + up, mesh_.centroid[i] + up});
-  }
-  const std::vector<float> arriving = occluder_.transmittance(segments);
-  std::vector<PatchIndex> found;
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    if (arriving[k] > 0) found.push_back(others[k]);
-  }
-  return found;
-}
-
 std::vector<PatchIndex> Planes::patches_around(PatchIndex j) const {
-  std::vector<PatchIndex> around;
-  for (const std::uint32_t vertex : corner_vertices(mesh_, j)) {
-    for (const PatchIndex i : at_vertex_[vertex]) {
-      if (i != j && mesh_.polygon[i] == mesh_.polygon[j] && mesh_.side[i] == mesh_.side[j]) around.push_back(i);
-    }
-  }
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  std::vector<PatchIndex> around = fits_.patches_around(j);
   const auto unequal =
       std::stable_partition(around.begin(), around.end(), [&](PatchIndex i) { return are_about_equal(i, j); });
   if (unequal == around.end()) return around;
-  const std::vector<PatchIndex> seen = in_sight(j, std::span<const PatchIndex>(unequal, around.end()));
+  const std::vector<PatchIndex> seen = fits_.in_sight(j, std::span<const PatchIndex>(unequal, around.end()));
   around.erase(unequal, around.end());
   around.insert(around.end(), seen.begin(), seen.end());
   return around;
 }
 
-// (sum d d^T) g = sum d (B_i - B_j), d the way from one centroid to the other; without slopes that would make the plane
-// negative at a corner. Damping keeps the fit soluble where all neighbors lie in one direction.
+// Without slopes that would make the plane negative at a corner.
 Gradient Planes::fitted(PatchIndex j, std::span<const PatchIndex> around) const {
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  Gradient products = Gradient::Zero(3, values_.cols());
-  for (const PatchIndex i : around) {
-    const Vector d = mesh_.centroid[i] - mesh_.centroid[j];
-    squares += d * d.transpose();
-    products += d * (values_.row(i) - values_.row(j)).matrix();
-  }
-  const double size = squares.trace();
-  if (!(size > 0)) return Gradient::Zero(3, values_.cols());
-  // The damping of 1e-6 keeps the matrix regular where the patches lie on one line.
-  squares += size * (mesh_.normal[j] * mesh_.normal[j].transpose() + 1e-6 * Eigen::Matrix3d::Identity());
-  Gradient gradient = squares.ldlt().solve(products);
+  Gradient gradient = Gradient::Zero(3, values_.cols());
+  const Eigen::Matrix3Xd slopes = fits_.slopes(j, around);
+  for (std::size_t k = 0; k < around.size(); ++k)
+    gradient += slopes.col(static_cast<Eigen::Index>(k)) * (values_.row(around[k]) - values_.row(j)).matrix();
   const PatchCorners corners = mesh_.corner_points(j);
   for (Eigen::Index band = 0; band < values_.cols(); ++band) {
     double least = 0;
