@@ -314,6 +314,7 @@ Scene with_other_daylight(Scene scene, const ReadOptions& options) {
   scene.sun = lit.sun;
   scene.sky = lit.sky;
   scene.inputs.insert(scene.inputs.end(), lit.inputs.begin(), lit.inputs.end());
+  scene.diagnostics.insert(scene.diagnostics.end(), lit.diagnostics.begin(), lit.diagnostics.end());
   return with_daylight_in_bands(std::move(scene));
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/tolerances.h"
 #include "base/words.h"
+#include "light/photometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,6 +101,26 @@ Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index band
   return irradiance;
 }
 
+// The row of a weather file, and the light that follows from it.
+Diagnostic note_on(const WeatherHour& weather, const Daylight& daylight, const Bands& bands) {
+  const SolarPosition sun = solar_position(weather.place, weather.middle);
+  const auto lux = [&](const Spectrum& irradiance) { return " (" + rounded(luminance(irradiance, bands)) + " lx)"; };
+  std::string text = weather.where + ": month " + std::to_string(weather.middle.month) + ", day " +
+                     std::to_string(weather.middle.day) + ", " + std::to_string(weather.begin) + " to " +
+                     std::to_string(weather.begin + 1) + " h standard time: sun at altitude " + rounded(sun.altitude) +
+                     ", azimuth " + rounded(sun.azimuth) + " degrees; direct normal " +
+                     rounded(weather.solar.direct_normal) + " W/m^2" +
+                     (daylight.sun ? lux(daylight.sun->normal_irradiance) : " (none is simulated)") +
+                     ", diffuse horizontal " + rounded(weather.solar.diffuse_horizontal) + " W/m^2" +
+                     (daylight.sky ? lux(daylight.sky->horizontal_irradiance) : "");
+  if (!daylight.sky) return {DiagnosticCode::simplified_light, text + "; no sky"};
+  const bool is_perez = daylight.sky->kind == SkyKind::perez;
+  text += is_perez ? "; Perez sky, clearness " + rounded(daylight.sky->clearness) + ", brightness " +
+                         rounded(daylight.sky->brightness)
+                   : std::string("; uniform sky, as the sun is below the horizon");
+  return {DiagnosticCode::simplified_light, text};
+}
+
 }  // namespace
 
 Scene with_lights(Scene scene, const LightEntries& lights) {
@@ -111,6 +132,7 @@ Scene with_lights(Scene scene, const LightEntries& lights) {
   Daylight daylight = with_spectra(daylight_of(lights, scene, bands), lights);
   if ((scene.sun && daylight.sun) || (scene.sky && daylight.sky))
     throw InputError(lights.where, "a file read before has sun or sky; expected each once");
+  if (lights.weather) scene.diagnostics.push_back(note_on(*lights.weather, daylight, bands_of(scene)));
   if (daylight.sun) scene.sun = daylight.sun;
   if (daylight.sky) {
     // L = rho E / pi

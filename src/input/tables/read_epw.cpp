@@ -67,6 +67,8 @@ double within(const Line& line, std::size_t field, double low, double high, cons
 
 WeatherHour weather_of(const Line& place, const Line& line, const Instant& local_time) {
   WeatherHour weather;
+  weather.where = line.where;
+  weather.begin = static_cast<int>(local_time.hour);
   weather.place = {within(place, location::latitude, -90, 90, "the latitude in degrees"),
                    within(place, location::longitude, -180, 180, "the longitude in degrees")};
   const double zone = within(place, location::time_zone, -14, 14, "the time zone in hours");

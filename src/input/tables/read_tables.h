@@ -39,6 +39,8 @@ struct WeatherHour {
   Place place;
   Instant middle;         ///< middle of the hour, UTC
   SolarIrradiance solar;  ///< means over the hour
+  std::string where{};    ///< file and line
+  int begin = 0;          ///< local standard time, 0 to 23
 };
 
 /// Reads one hour of an EnergyPlus weather file (EPW): the hour that begins `hour` (0 to 23) in local standard time, in
