@@ -62,10 +62,10 @@ struct SpaceErrors {
 /// The light between patches, H = F B, as a run has solved it in some bands: for views that need its adjoint. Areas are
 /// those for which F is reciprocal, the part of each patch that holds light from all directions alike.
 struct SolvedTransport {
-  std::vector<Eigen::Index> bands;                    ///< columns of RadiosityProblem that it is for
-  std::shared_ptr<const TransportOperator> light;     ///< F
-  Scattering scattering;                              ///< R of these bands
-  Eigen::VectorXd area;                               ///< m^2
+  std::vector<Eigen::Index> bands;                 ///< columns of RadiosityProblem that it is for
+  std::shared_ptr<const TransportOperator> light;  ///< F
+  Scattering scattering;                           ///< R of these bands
+  Eigen::VectorXd area;                            ///< m^2
 };
 
 struct RayExchange;
@@ -101,8 +101,8 @@ struct Simulation {
   bool unfinished = false;                    ///< stopped by the observer, with Steps::keeps_unfinished
   std::vector<SolvedTransport> transports = {};  ///< with Steps::keeps_transport, one for each color that panes and
                                                  ///< mirrors distinguish
-  std::shared_ptr<const World> world = {};    ///< the scene with its rays and lights, which views share; never
-                                              ///< null after simulate()
+  std::shared_ptr<const World> world = {};       ///< the scene with its rays and lights, which views share; never
+                                                 ///< null after simulate()
 };
 
 /// The exchange between the patches of a mesh where it is known already.

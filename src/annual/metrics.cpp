@@ -106,8 +106,7 @@ OfRoom measures_of(std::span<const OfSensor* const> sensors) {
 template <std::size_t count>
 std::array<Measure, count> with_errors(const std::array<std::array<double, count>, 3>& series) {
   std::array<Measure, count> found;
-  for (std::size_t m = 0; m < count; ++m)
-    found[m] = {series[0][m], std::abs(series[1][m] - series[2][m]) / 2};
+  for (std::size_t m = 0; m < count; ++m) found[m] = {series[0][m], std::abs(series[1][m] - series[2][m]) / 2};
   return found;
 }
 
@@ -147,19 +146,33 @@ CountedHours counted_hours(const Year& year, const Scene& scene, int first, int 
 }
 
 const char* name_of(SensorMeasure measure) {
-  constexpr std::array<const char*, sensor_measures> names = {
-      "mean_lx",        "DA300_percent",        "cDA300_percent",        "UDI_below_100_percent",
-      "UDI_100_300_percent", "UDI_300_3000_percent", "UDI_above_3000_percent", "sun_above_1000lx_hours",
-      "daylight_factor_percent", "half_daylight_hours_lx"};
+  constexpr std::array<const char*, sensor_measures> names = {"mean_lx",
+                                                              "DA300_percent",
+                                                              "cDA300_percent",
+                                                              "UDI_below_100_percent",
+                                                              "UDI_100_300_percent",
+                                                              "UDI_300_3000_percent",
+                                                              "UDI_above_3000_percent",
+                                                              "sun_above_1000lx_hours",
+                                                              "daylight_factor_percent",
+                                                              "half_daylight_hours_lx"};
   return names[at(measure)];
 }
 
 const char* name_of(RoomMeasure measure) {
-  constexpr std::array<const char*, room_measures> names = {
-      "sDA300_50_percent", "ASE1000_250_percent", "mean_lx", "mean_DA300_percent", "mean_cDA300_percent",
-      "mean_UDI_below_100_percent", "mean_UDI_100_300_percent", "mean_UDI_300_3000_percent",
-      "mean_UDI_above_3000_percent", "median_daylight_factor_percent", "EN17037_half_of_plane_lx",
-      "EN17037_95_percent_of_plane_lx", "EN17037_grade"};
+  constexpr std::array<const char*, room_measures> names = {"sDA300_50_percent",
+                                                            "ASE1000_250_percent",
+                                                            "mean_lx",
+                                                            "mean_DA300_percent",
+                                                            "mean_cDA300_percent",
+                                                            "mean_UDI_below_100_percent",
+                                                            "mean_UDI_100_300_percent",
+                                                            "mean_UDI_300_3000_percent",
+                                                            "mean_UDI_above_3000_percent",
+                                                            "median_daylight_factor_percent",
+                                                            "EN17037_half_of_plane_lx",
+                                                            "EN17037_95_percent_of_plane_lx",
+                                                            "EN17037_grade"};
   return names[at(measure)];
 }
 

@@ -17,19 +17,19 @@ std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occlude
   return planes;
 }
 
-Field seen_patches(const HemisphereRays& hemisphere, const PatchMesh& mesh, std::span<const PatchPlane> planes,
-                   std::span<const Sensor> sensors, Eigen::Index bands, std::uint32_t each, double tolerance) {
-  Field seen = Field::Zero(mesh.size(), static_cast<Eigen::Index>(sensors.size()) * bands);
+Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors) {
+  const PatchMesh& mesh = by.mesh;
+  Field seen = Field::Zero(mesh.size(), static_cast<Eigen::Index>(sensors.size()) * by.bands);
   parallel_for(sensors.size(), [&](std::size_t k) {
     const Sensor& sensor = sensors[k];
-    const auto first = static_cast<Eigen::Index>(k) * bands;
-    const auto add = [&](PatchIndex patch, const Spectrum& weight) { seen.row(patch).segment(first, bands) += weight; };
-    for (const HemisphereHit& hit : hemisphere.hits(sensor, each, 0).all) {
+    const auto first = static_cast<Eigen::Index>(k) * by.bands;
+    const auto add = [&](PatchIndex j, const Spectrum& weight) { seen.row(j).segment(first, by.bands) += weight; };
+    for (const HemisphereHit& hit : by.hemisphere.hits(sensor, by.each, 0).all) {
       // A sensor on a face does not see the patches of that face.
       const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
-      if (!hit.is_mirrored && height <= tolerance) continue;
+      if (!hit.is_mirrored && height <= by.tolerance) continue;
       add(hit.patch, hit.weight);
-      const PatchPlane& plane = planes[hit.patch];
+      const PatchPlane& plane = by.planes[hit.patch];
       const Vector way = hit.point - mesh.centroid[hit.patch];
       for (std::size_t n = 0; n < plane.around.size(); ++n) {
         const double share = way.dot(plane.slopes.col(static_cast<Eigen::Index>(n)));

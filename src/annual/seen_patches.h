@@ -24,9 +24,18 @@ struct PatchPlane {
 /// Those of all patches; patches between which something stands do not count. \throws Canceled.
 std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occluder, const Observer& observer);
 
+/// How sensors look at patches.
+struct SeenBy {
+  const HemisphereRays& hemisphere;
+  const PatchMesh& mesh;
+  std::span<const PatchPlane> planes;
+  Eigen::Index bands = 1;
+  std::uint32_t each = 0;  ///< rays in each of most_replicates
+  double tolerance = 0;    ///< a sensor nearer to the plane of a patch lies in it, m
+};
+
 /// The irradiance at each sensor by a radiosity of 1 on each patch, straight or through panes and mirrors: a row for
-/// each patch, for each sensor one column after the other for its bands. `each` rays in each of most_replicates.
-Field seen_patches(const HemisphereRays& hemisphere, const PatchMesh& mesh, std::span<const PatchPlane> planes,
-                   std::span<const Sensor> sensors, Eigen::Index bands, std::uint32_t each, double tolerance);
+/// each patch, for each sensor one column after the other for its bands.
+Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors);
 
 }  // namespace patchlight

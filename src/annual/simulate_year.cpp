@@ -1,5 +1,4 @@
 #include "patchlight/annual/annual.h"
-
 #include "patchlight/base/error.h"
 #include "patchlight/transport/lost_share.h"
 
@@ -11,13 +10,16 @@
 #include "base/tolerances.h"
 #include "gather/sensor_places.h"
 #include "lighting/mirror_paths.h"
-#include "pipeline/run.h"
 #include "pipeline/world.h"
 #include "plan/choose_storage.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numbers>
+#include <span>
+#include <string>
 #include <utility>
 
 namespace patchlight {
@@ -26,18 +28,32 @@ namespace {
 // Sensors whose columns are solved together.
 constexpr std::size_t sensors_at_once = 32;
 
-// A year with all that its light does straight.
-struct StraightLight {
-  SkyDivisions divisions;
-  SunsOfYear suns;
-  std::vector<SparseCoefficients> sky_on_patches;  // per band
-  std::vector<SparseSunlight> sun_on_patches;      // per band
+// The light of a year on patches, before any reflection between them: a matrix for each band.
+struct LightOnPatches {
+  std::vector<SparseCoefficients> sky;
+  std::vector<SparseSunlight> sun;
 };
 
-// What the sensors get, summed up by the weights of the bands: per division of the sky (column) by luminance 1, and
+// The light at the sensors, summed up by the weights of the bands: per division of the sky (column) by luminance 1, and
 // from each sun (column), as a share of its normal illuminance.
-struct AtSensors {
+struct LightAtSensors {
   Eigen::MatrixXf by_sky, by_sun_straight, by_sun_reflected;
+};
+
+// All that the steps share.
+struct RunOfYear {
+  const YearScene& year;
+  const Simulation& simulation;
+  const AnnualOptions& options;
+  const Observer& observer;
+  SkyDivisions divisions;
+  SunsOfYear suns;
+
+  const World& world() const { return *simulation.world; }
+  std::uint64_t seed() const { return simulation.plan.assembly.seed; }
+  SkyCoefficientOptions sampling() const { return {options.sky_samples, seed()}; }
+  float sky_weight(std::size_t band) const { return static_cast<float>(year.scene.bands[band].luminous_weight); }
+  float sun_weight(std::size_t band) const { return static_cast<float>(year.sun_weights[band]); }
 };
 
 // The sensors that are not inside walls, with their numbers among all.
@@ -59,12 +75,6 @@ FreeSensors free_sensors(const Simulation& simulation) {
   return found;
 }
 
-std::vector<SurfacePoint> points_of(const std::vector<Sensor>& sensors) {
-  std::vector<SurfacePoint> points;
-  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
-  return points;
-}
-
 // The share of each patch's geometric area that holds light from all directions alike: g of radiosities of the
 // geometric area is this share times g of those of the solved transport.
 Eigen::ArrayXd solved_share(const Simulation& simulation, const SolvedTransport& solved) {
@@ -72,86 +82,132 @@ Eigen::ArrayXd solved_share(const Simulation& simulation, const SolvedTransport&
   return (geometric > 0).select(solved.area.array() / geometric, 0.0);
 }
 
-// The columns of one block, for the bands of one transport.
+// Sensors whose columns are solved together.
 struct Block {
-  std::size_t begin, end;  // sensors
+  std::size_t begin = 0, end = 0;
+
+  std::size_t size() const { return end - begin; }
 };
 
-// Adds what the light on patches sends to the sensors of a block by all reflections.
-void add_reflected(const Field& weights, const std::vector<Eigen::Index>& bands, const YearScene& year,
-                   const StraightLight& light, Block block, AtSensors& at) {
-  const auto count = static_cast<Eigen::Index>(block.end - block.begin);
-  const auto own = static_cast<Eigen::Index>(bands.size());
-  using Weights = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Weights = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// sum_j W_ij H_jd of the sensors of a block, row by row of H.
+void add_reflected_sky(const Weights& weights, const SparseCoefficients& H, Block block, LightAtSensors& at) {
+  Weights by_division = Weights::Zero(H.cols(), weights.cols());
+  for (Eigen::Index patch = 0; patch < H.rows(); ++patch)
+    for (SparseCoefficients::InnerIterator entry(H, patch); entry; ++entry)
+      by_division.row(entry.col()) += entry.value() * weights.row(patch);
+  at.by_sky.middleRows(static_cast<Eigen::Index>(block.begin), weights.cols()) += by_division.transpose();
+}
+
+// sum_j W_ij H_sun,j of all suns.
+void add_reflected_sun(const Weights& weights, const SparseSunlight& H, Block block, LightAtSensors& at) {
+  constexpr Eigen::Index at_once = 256;
+  const auto first_sensor = static_cast<Eigen::Index>(block.begin);
+  parallel_for(static_cast<std::size_t>((H.rows() + at_once - 1) / at_once), [&](std::size_t task) {
+    const Eigen::Index first = static_cast<Eigen::Index>(task) * at_once;
+    for (Eigen::Index sun = first; sun < std::min(H.rows(), first + at_once); ++sun) {
+      Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(weights.cols());
+      for (SparseSunlight::InnerIterator entry(H, sun); entry; ++entry) sum += entry.value() * weights.row(entry.col());
+      at.by_sun_reflected.col(sun).segment(first_sensor, weights.cols()) += sum.transpose();
+    }
+  });
+}
+
+// The columns of `seen` for the bands of a transport, sensor by sensor, and the band of each within them.
+struct ColumnsOfColor {
+  std::vector<Eigen::Index> columns, bands;
+};
+
+ColumnsOfColor columns_of(const SolvedTransport& solved, std::size_t sensors, Eigen::Index bands) {
+  ColumnsOfColor found;
+  for (std::size_t k = 0; k < sensors; ++k)
+    for (std::size_t b = 0; b < solved.bands.size(); ++b) {
+      found.columns.push_back(static_cast<Eigen::Index>(k) * bands + solved.bands[b]);
+      found.bands.push_back(static_cast<Eigen::Index>(b));
+    }
+  return found;
+}
+
+// Adds the light that patches reflect to the sensors of a block in the bands of one transport. `seen` is that of
+// seen_patches(), `exposed` the factor from the mean over a patch to that over its exposed part.
+void add_reflected(const RunOfYear& run, const SolvedTransport& solved, const AdjointLight& adjoint, const Field& seen,
+                   const Eigen::ArrayXd& exposed, const LightOnPatches& light, Block block, LightAtSensors& at) {
+  const auto own = static_cast<Eigen::Index>(solved.bands.size());
+  const auto [columns, bands] = columns_of(solved, block.size(), number_of_bands(run.year.scene));
+  Field of_color = seen(Eigen::all, columns);
+  of_color.colwise() *= solved_share(run.simulation, solved);
+  Field weights = adjoint.weights(of_color, bands, run.options.tolerance);
+  weights.colwise() *= exposed;
   for (Eigen::Index b = 0; b < own; ++b) {
-    const auto band = static_cast<std::size_t>(bands[static_cast<std::size_t>(b)]);
-    Weights of_band(weights.rows(), count);
-    for (Eigen::Index k = 0; k < count; ++k) of_band.col(k) = weights.col(k * own + b).cast<float>().matrix();
-    const auto of_sky = static_cast<float>(year.scene.bands[band].luminous_weight);
-    const auto of_sun = static_cast<float>(year.sun_weights[band]);
-    const Weights scaled = of_sky * of_band;
-    // D^T = H^T W^T, row by row of H.
-    const SparseCoefficients& H = light.sky_on_patches[band];
-    Weights by_division = Weights::Zero(H.cols(), count);
-    for (Eigen::Index patch = 0; patch < H.rows(); ++patch)
-      for (SparseCoefficients::InnerIterator entry(H, patch); entry; ++entry)
-        by_division.row(entry.col()) += entry.value() * scaled.row(patch);
-    at.by_sky.middleRows(static_cast<Eigen::Index>(block.begin), count) += by_division.transpose();
-    // All suns, many at once.
-    const SparseSunlight& S = light.sun_on_patches[band];
-    constexpr Eigen::Index at_once = 256;
-    parallel_for(static_cast<std::size_t>((S.rows() + at_once - 1) / at_once), [&](std::size_t task) {
-      const Eigen::Index first = static_cast<Eigen::Index>(task) * at_once;
-      for (Eigen::Index sun = first; sun < std::min(S.rows(), first + at_once); ++sun) {
-        Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(count);
-        for (SparseSunlight::InnerIterator entry(S, sun); entry; ++entry) sum += entry.value() * of_band.row(entry.col());
-        at.by_sun_reflected.col(sun).segment(static_cast<Eigen::Index>(block.begin), count) += of_sun * sum.transpose();
-      }
-    });
+    const auto band = static_cast<std::size_t>(solved.bands[static_cast<std::size_t>(b)]);
+    Weights of_band(weights.rows(), static_cast<Eigen::Index>(block.size()));
+    for (Eigen::Index k = 0; k < of_band.cols(); ++k) of_band.col(k) = weights.col(k * own + b).cast<float>().matrix();
+    add_reflected_sky(run.sky_weight(band) * of_band, light.sky[band], block, at);
+    add_reflected_sun(run.sun_weight(band) * of_band, light.sun[band], block, at);
   }
 }
 
-// Adds the light that patches reflect to the sensors, block by block.
-void add_all_reflected(const Simulation& simulation, const YearScene& year, const StraightLight& light,
-                       const std::vector<Sensor>& sensors, const AnnualOptions& options, const Observer& observer,
-                       AtSensors& at) {
-  const World& world = *simulation.world;
-  const Lighting& lighting = world.sensor_lighting();
-  const Occluder& occluder = world.all_faces();
-  const Eigen::Index bands = number_of_bands(year.scene);
-  const HemisphereRays hemisphere(simulation.mesh, occluder, *lighting.paths.optics(), bands,
-                                  simulation.plan.assembly.seed, lighting.mirrors ? &lighting.mirrors->aim : nullptr);
-  const auto each = static_cast<std::uint32_t>(options.rays / most_replicates);
-  const double tolerance = tolerance_of_shapes / occluder.frame().scale;
-  const Eigen::ArrayXd factor = over_exposed_part(simulation.mesh, simulation.transport.lost, simulation.problem.area);
-  const std::vector<PatchPlane> planes = planes_of(simulation.mesh, occluder, observer);
+// The same for all sensors, block by block.
+void add_all_reflected(const RunOfYear& run, const LightOnPatches& light, const std::vector<Sensor>& sensors,
+                       LightAtSensors& at) {
+  const Simulation& simulation = run.simulation;
+  const Lighting& lighting = run.world().sensor_lighting();
+  const Occluder& occluder = run.world().all_faces();
+  const Eigen::Index bands = number_of_bands(run.year.scene);
+  const HemisphereRays hemisphere(simulation.mesh, occluder, *lighting.paths.optics(), bands, run.seed(),
+                                  lighting.mirrors ? &lighting.mirrors->aim : nullptr);
+  const std::vector<PatchPlane> planes = planes_of(simulation.mesh, occluder, run.observer);
+  const SeenBy seen_by{hemisphere,
+                       simulation.mesh,
+                       planes,
+                       bands,
+                       static_cast<std::uint32_t>(run.options.rays) / most_replicates,
+                       tolerance_of_shapes / occluder.frame().scale};
+  const Eigen::ArrayXd exposed = over_exposed_part(simulation.mesh, simulation.transport.lost, simulation.problem.area);
   std::vector<AdjointLight> adjoints;
   for (const SolvedTransport& solved : simulation.transports) adjoints.emplace_back(solved);
   for (std::size_t begin = 0; begin < sensors.size(); begin += sensors_at_once) {
     const Block block{begin, std::min(sensors.size(), begin + sensors_at_once)};
-    if (observer && !observer({.stage = Stage::solve, .fraction = static_cast<double>(begin) / static_cast<double>(sensors.size())})) throw Canceled();
-    const Field seen = seen_patches(hemisphere, simulation.mesh, planes, std::span(sensors).subspan(begin, block.end - begin),
-                                    bands, each, tolerance);
-    for (std::size_t t = 0; t < adjoints.size(); ++t) {
-      const SolvedTransport& solved = simulation.transports[t];
-      std::vector<Eigen::Index> columns, own;
-      for (std::size_t k = 0; k < block.end - begin; ++k)
-        for (std::size_t b = 0; b < solved.bands.size(); ++b) {
-          columns.push_back(static_cast<Eigen::Index>(k) * bands + solved.bands[b]);
-          own.push_back(static_cast<Eigen::Index>(b));
-        }
-      Field of_colour = seen(Eigen::all, columns);
-      of_colour.colwise() *= solved_share(simulation, solved);
-      Field weights = adjoints[t].weights(of_colour, own, options.tolerance);
-      weights.colwise() *= factor;
-      add_reflected(weights, solved.bands, year, light, block, at);
-    }
+    const double done = static_cast<double>(begin) / static_cast<double>(sensors.size());
+    if (run.observer && !run.observer({.stage = Stage::solve, .fraction = done})) throw Canceled();
+    const Field seen = seen_patches(seen_by, std::span(sensors).subspan(begin, block.size()));
+    for (std::size_t t = 0; t < adjoints.size(); ++t)
+      add_reflected(run, simulation.transports[t], adjoints[t], seen, exposed, light, block, at);
   }
 }
 
+LightOnPatches light_on_patches(const RunOfYear& run) {
+  const World& world = run.world();
+  LightOnPatches light;
+  light.sky = sky_coefficients(world.lighting(), run.simulation.mesh, run.divisions, run.sampling(), run.observer);
+  light.sun = sunlight_on({world.lighting(), world.planned_scene(), world.tracing()}, run.simulation.mesh, light.sky[0],
+                          run.divisions, run.suns.directions, run.seed(), run.observer);
+  return light;
+}
+
+// The light of sky and suns that gets to the sensors without reflections between patches.
+LightAtSensors straight_light(const RunOfYear& run, const std::vector<Sensor>& sensors) {
+  const World& world = run.world();
+  std::vector<SurfacePoint> points;
+  for (const Sensor& sensor : sensors) points.push_back({sensor.point, sensor.normal});
+  const auto count = static_cast<Eigen::Index>(points.size());
+  const auto suns = static_cast<Eigen::Index>(run.suns.hours.size());
+  LightAtSensors at{Eigen::MatrixXf::Zero(count, static_cast<Eigen::Index>(run.divisions.size())),
+                    Eigen::MatrixXf::Zero(count, suns), Eigen::MatrixXf::Zero(count, suns)};
+  const auto by_sky = sky_coefficients(world.sensor_lighting(), points, run.divisions, run.sampling(), run.observer);
+  for (std::size_t band = 0; band < by_sky.size(); ++band)
+    at.by_sky += run.sky_weight(band) * Eigen::MatrixXf(by_sky[band]);
+  const auto by_sun = sunlight_at({world.sensor_lighting(), world.sensor_scene(), world.tracing()}, points,
+                                  run.suns.directions, run.observer);
+  for (std::size_t band = 0; band < by_sun.size(); ++band)
+    at.by_sun_straight += run.sun_weight(band) * by_sun[band].transpose();
+  return at;
+}
+
 void require_memory_for(const Scene& scene, const Request& request, const Year& year, const AnnualOptions& options) {
-  const double sensors = static_cast<double>(all_sensors(scene.sensors).size());
-  const double hours = static_cast<double>(year.hours.size());
+  const auto sensors = static_cast<double>(all_sensors(scene.sensors).size());
+  const auto hours = static_cast<double>(year.hours.size());
   const double divisions = 144.0 * options.sky_division * options.sky_division + 2;
   // Two results and three parts of them for half of the hours, coefficients of sensors, and the sky.
   const double bytes = 4 * (3.5 * sensors * hours + 2 * sensors * divisions + hours * divisions);
@@ -160,9 +216,70 @@ void require_memory_for(const Scene& scene, const Request& request, const Year& 
                       memory_refused(bytes, request.resources) + "\nhint: fewer sensors, or --sky-division 1");
 }
 
-HourlyValues no_light(const Year& year, std::size_t sensors) {
-  return HourlyValues::Zero(static_cast<Eigen::Index>(year.hours.size()), static_cast<Eigen::Index>(sensors));
+// Illuminances hour by hour; not numbers at sensors inside walls.
+void put_hours(const SunsOfYear& suns, const SkiesOfYear& skies, const LightAtSensors& at, const FreeSensors& free,
+               AnnualLight& result) {
+  const auto put = [&](Eigen::Index i, HourlyValues& values, std::size_t hour, float value) {
+    values(static_cast<Eigen::Index>(hour), free.numbers[static_cast<std::size_t>(i)]) += value;
+  };
+  for (const Eigen::Index number : free.numbers) {
+    result.illuminance.col(number).setZero();
+    result.sunlight.col(number).setZero();
+  }
+  const Eigen::MatrixXf by_skies = at.by_sky * skies.luminance;
+  for (Eigen::Index i = 0; i < at.by_sky.rows(); ++i) {
+    for (std::size_t k = 0; k < skies.hours.size(); ++k)
+      put(i, result.illuminance, skies.hours[k], by_skies(i, static_cast<Eigen::Index>(k)));
+    for (std::size_t k = 0; k < suns.hours.size(); ++k) {
+      const auto sun = static_cast<Eigen::Index>(k);
+      const float straight = suns.illuminance[sun] * at.by_sun_straight(i, sun);
+      put(i, result.sunlight, suns.hours[k], straight);
+      put(i, result.illuminance, suns.hours[k], straight + suns.illuminance[sun] * at.by_sun_reflected(i, sun));
+    }
+  }
 }
+
+// The light of the reference sky by its divisions and as solved, and the errors of the latter.
+void put_daylight_factors(const RunOfYear& run, double ground_reflectance, const LightAtSensors& at,
+                          const FreeSensors& free, const Readings& reference, AnnualLight& result) {
+  const Scene& scene = run.year.scene;
+  const double ground = ground_reflectance / std::numbers::pi * reference_illuminance;
+  const Eigen::VectorXf illuminance =
+      at.by_sky * luminances_of(*scene.sky, reference_illuminance, ground, run.divisions, scene.up);
+  for (Eigen::Index i = 0; i < illuminance.size(); ++i) {
+    const Eigen::Index sensor = free.numbers[static_cast<std::size_t>(i)];
+    const SensorValue solved = sensor_value(reference, static_cast<std::size_t>(sensor));
+    result.daylight_factor[sensor] = 100 * static_cast<double>(illuminance[i]) / reference_illuminance;
+    result.solved_daylight_factor[sensor] = 100 * solved.value / reference_illuminance;
+    result.relative_error[sensor] = solved.value > 0 ? solved.standard_error / solved.value : 0;
+  }
+}
+
+AnnualLight nothing_known(const Year& year, std::size_t sensors) {
+  const auto count = static_cast<Eigen::Index>(sensors);
+  const auto hours = static_cast<Eigen::Index>(year.hours.size());
+  AnnualLight light;
+  light.illuminance = light.sunlight = HourlyValues::Constant(hours, count, std::numeric_limits<float>::quiet_NaN());
+  light.daylight_factor = light.solved_daylight_factor = light.relative_error =
+      Eigen::VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
+  return light;
+}
+
+// The costs of phases, one after the other.
+class PhaseClock {
+ public:
+  explicit PhaseClock(AnnualLight& result) : result_(result) {}
+  void finish(const char* phase) {
+    result_.costs.push_back({phase, wall_seconds() - wall_, cpu_seconds() - cpu_});
+    wall_ = wall_seconds();
+    cpu_ = cpu_seconds();
+  }
+
+ private:
+  AnnualLight& result_;
+  double wall_ = wall_seconds();
+  double cpu_ = cpu_seconds();
+};
 
 }  // namespace
 
@@ -170,93 +287,44 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
                           const AnnualOptions& options, const Observer& observer) {
   const ThreadLimit threads(request.resources.threads);
   require_memory_for(*read, request, year, options);
-  AnnualLight result;
+  AnnualLight result = nothing_known(year, all_sensors(read->sensors).size());
+  PhaseClock clock(result);
 
   // 1. Solve the scene under a reference sky: mesh, form factors, materials, and the errors of all that.
   const YearScene of_year = scene_of_year(*read, year);
-  const Simulation simulation = simulate(std::make_shared<const Scene>(of_year.scene), request, observer,
-                                         {.keeps_transport = true});
-  result.costs = simulation.costs;
-  result.notes = merged({simulation.plan.notes, simulation.notes});
-  result.patches = simulation.mesh.size();
-  StageClock clock;
+  const Simulation simulation =
+      simulate(std::make_shared<const Scene>(of_year.scene), request, observer, {.keeps_transport = true});
+  clock.finish("mesh and form factors");
   const SensorView reference = read_sensors(simulation, observer);
-  clock.finish(Stage::gather);
+  clock.finish("sensors under an overcast sky");
 
-  // 2. Straight light on patches and at sensors: of all divisions of the sky, and of all suns.
-  const World& world = *simulation.world;
+  // 2. Straight light of all divisions of the sky and all suns, on patches and at sensors.
+  const RunOfYear run{of_year,
+                      simulation,
+                      options,
+                      observer,
+                      SkyDivisions(options.sky_division, of_year.scene.up, of_year.scene.north),
+                      suns_of(year, *read)};
   const FreeSensors free = free_sensors(simulation);
-  const std::vector<SurfacePoint> points = points_of(free.sensors);
-  const Scene& scene = of_year.scene;
-  const SkyCoefficientOptions sampling{options.sky_samples, simulation.plan.assembly.seed};
-  StraightLight light{SkyDivisions(options.sky_division, scene.up, scene.north), suns_of(year, *read), {}, {}};
-  light.sky_on_patches = sky_coefficients(world.lighting(), simulation.mesh, light.divisions, sampling, observer);
-  const auto count = static_cast<Eigen::Index>(points.size());
-  const auto suns = static_cast<Eigen::Index>(light.suns.hours.size());
-  AtSensors at{Eigen::MatrixXf::Zero(count, static_cast<Eigen::Index>(light.divisions.size())),
-               Eigen::MatrixXf::Zero(count, suns), Eigen::MatrixXf::Zero(count, suns)};
-  const auto sky_at_sensors = sky_coefficients(world.sensor_lighting(), points, light.divisions, sampling, observer);
-  for (std::size_t band = 0; band < sky_at_sensors.size(); ++band)
-    at.by_sky += static_cast<float>(scene.bands[band].luminous_weight) * Eigen::MatrixXf(sky_at_sensors[band]);
-  clock.finish(Stage::direct_light);
-  const auto sun_at_sensors = sunlight_at({world.sensor_lighting(), world.sensor_scene(), world.tracing()}, points, light.suns.directions, observer);
-  for (std::size_t band = 0; band < sun_at_sensors.size(); ++band)
-    at.by_sun_straight += static_cast<float>(of_year.sun_weights[band]) * sun_at_sensors[band].transpose();
-  light.sun_on_patches =
-      sunlight_on({world.lighting(), world.planned_scene(), world.tracing()}, simulation.mesh, light.sky_on_patches[0],
-                  light.divisions, light.suns.directions, sampling.seed, observer);
-  clock.finish(Stage::trace_paths);
+  LightAtSensors at = straight_light(run, free.sensors);
+  clock.finish("sky and sun at sensors");
+  const LightOnPatches light = light_on_patches(run);
+  clock.finish("sky and sun on patches");
 
   // 3. All reflections of both.
-  add_all_reflected(simulation, of_year, light, free.sensors, options, observer, at);
-  clock.finish(Stage::solve);
+  add_all_reflected(run, light, free.sensors, at);
+  clock.finish("reflections");
 
   // 4. Hour by hour.
-  const std::size_t all = all_sensors(scene.sensors).size();
-  result.illuminance = no_light(year, all);
-  result.sunlight = no_light(year, all);
-  const SkiesOfYear skies = skies_of(year, *read, light.divisions, observer);
-  const Eigen::MatrixXf by_skies = at.by_sky * skies.luminance;
-  for (std::size_t k = 0; k < skies.hours.size(); ++k)
-    for (Eigen::Index i = 0; i < count; ++i)
-      result.illuminance(static_cast<Eigen::Index>(skies.hours[k]), free.numbers[static_cast<std::size_t>(i)]) =
-          by_skies(i, static_cast<Eigen::Index>(k));
-  for (Eigen::Index k = 0; k < suns; ++k) {
-    const auto hour = static_cast<Eigen::Index>(light.suns.hours[static_cast<std::size_t>(k)]);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index sensor = free.numbers[static_cast<std::size_t>(i)];
-      result.sunlight(hour, sensor) = light.suns.illuminance[k] * at.by_sun_straight(i, k);
-      result.illuminance(hour, sensor) +=
-          light.suns.illuminance[k] * (at.by_sun_straight(i, k) + at.by_sun_reflected(i, k));
-    }
-  }
-  result.sun_hours = light.suns.hours.size();
+  const SkiesOfYear skies = skies_of(year, *read, run.divisions, observer);
+  put_hours(run.suns, skies, at, free, result);
+  put_daylight_factors(run, year.ground_reflectance, at, free, reference.readings, result);
+  clock.finish("hours");
+  result.patches = simulation.mesh.size();
+  result.sun_hours = run.suns.hours.size();
   result.sky_hours = skies.hours.size();
-
-  // 5. The reference sky by both ways.
-  const double ground = year.ground_reflectance / 3.14159265358979 * reference_illuminance;
-  const Eigen::VectorXf factors =
-      at.by_sky * luminances_of(*scene.sky, reference_illuminance, ground, light.divisions, scene.up);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  result.daylight_factor = result.solved_daylight_factor = result.relative_error =
-      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(all), nan);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index sensor = free.numbers[static_cast<std::size_t>(i)];
-    const SensorValue value = sensor_value(reference.readings, static_cast<std::size_t>(sensor));
-    result.daylight_factor[sensor] = 100 * static_cast<double>(factors[i]) / reference_illuminance;
-    result.solved_daylight_factor[sensor] = 100 * value.value / reference_illuminance;
-    result.relative_error[sensor] = value.value > 0 ? value.standard_error / value.value : 0;
-  }
-  for (std::size_t k = 0, next = 0; k < all; ++k) {
-    if (next < free.numbers.size() && free.numbers[next] == static_cast<Eigen::Index>(k)) {
-      ++next;
-      continue;
-    }
-    result.illuminance.col(static_cast<Eigen::Index>(k)).setConstant(std::numeric_limits<float>::quiet_NaN());
-    result.sunlight.col(static_cast<Eigen::Index>(k)).setConstant(std::numeric_limits<float>::quiet_NaN());
-  }
-  clock.finish(Stage::gather);
-  result.costs.insert(result.costs.end(), clock.costs().begin(), clock.costs().end());
+  result.notes = simulation.notes;
+  result.warnings = reference.warnings;
   return result;
 }
 

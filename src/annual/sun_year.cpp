@@ -18,7 +18,7 @@
 namespace patchlight {
 namespace {
 
-// What arrives on one patch from one position of the sun.
+// The light on one patch from one position of the sun.
 struct OfSun {
   std::uint32_t sun = 0;
   Spectrum share;

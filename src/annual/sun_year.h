@@ -16,7 +16,7 @@ namespace patchlight {
 /// The sunlight of a patch or a point, per position of the sun (row) and receiver (column), of one band.
 using SparseSunlight = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
-/// What the light of all suns goes through.
+/// The scene that lies in the way of the suns.
 struct SunWays {
   const Lighting& lighting;  ///< of any sky
   const Scene& scene;
@@ -29,7 +29,8 @@ std::vector<Eigen::MatrixXf> sunlight_at(const SunWays& ways, std::span<const Su
                                          std::span<const Vector> suns, const Observer& observer);
 
 /// The same as means over patches, by the outlines of all shadows. `sky` has the patches' coefficients of `divisions`:
-/// a patch takes part at suns that stand near a division from which it gets light. Over mirrors the suns of a division
+/// only suns near a division from which
+/// a patch gets light are examined. Over mirrors the suns of a division
 /// stand together in their mean direction. \throws Canceled.
 std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
                                         const SkyDivisions& divisions, std::span<const Vector> suns, std::uint64_t seed,

@@ -45,14 +45,14 @@ std::optional<Spectrum> color_of(const std::vector<Spectrum>& lights, const Band
 std::vector<std::vector<Eigen::Index>> alike_bands(const Scene& scene, Eigen::Index bands) {
   std::vector<Spectrum> shares;
   visit_shares(scene, [&](const Spectrum& values, const SampledSpectrum*) { shares.push_back(values); });
-  const bool has_textures =
-      std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.texture.has_value(); });
+  const bool has_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                        [](const Material& m) { return m.texture.has_value(); });
   std::vector<std::vector<Eigen::Index>> groups;
   for (Eigen::Index band = 0; band < bands; ++band) {
     const auto is_alike = [&](const std::vector<Eigen::Index>& group) {
       return !has_textures && std::all_of(shares.begin(), shares.end(), [&](const Spectrum& s) {
-               return s.size() <= band || s[band] == s[group.front()];
-             });
+        return s.size() <= band || s[band] == s[group.front()];
+      });
     };
     const auto found = std::find_if(groups.begin(), groups.end(), is_alike);
     if (found == groups.end())

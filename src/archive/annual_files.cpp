@@ -22,7 +22,8 @@ bool may_be_replaced(const std::filesystem::path& folder) { return holds_result(
 
 void append(std::string& text, double value, int digits) {
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
   text.append(buffer.data(), end.ptr);
 }
 
@@ -144,8 +145,8 @@ Json facts(const AnnualOutput& output) {
     json["solved_daylight_factor_percent"].push_back(number(light.solved_daylight_factor[i]));
   }
   json["costs"] = Json::array();
-  for (const StageCost& cost : light.costs)
-    json["costs"].push_back({{"stage", name_of(cost.stage)}, {"seconds", cost.seconds}, {"cpu_seconds", cost.cpu_seconds}});
+  for (const PhaseCost& cost : light.costs)
+    json["costs"].push_back({{"phase", cost.phase}, {"seconds", cost.seconds}, {"cpu_seconds", cost.cpu_seconds}});
   return json;
 }
 

@@ -1,5 +1,6 @@
 // The command that computes a year of daylight.
 #include "patchlight/annual/annual.h"
+
 #include "patchlight/annual/metrics.h"
 #include "patchlight/base/error.h"
 
@@ -82,8 +83,9 @@ Scene scene_with_sensors(const AnnualArguments& arguments, const Observer& obser
   Scene scene = read_models(arguments.models, read, observer);
   if (!arguments.points.empty()) scene.sensors.push_back(read_points(arguments.points, scene.metres_per_unit));
   if (all_sensors(scene.sensors).empty())
-    throw InputError(scene.file, "has no sensors, at which a year could be computed\n"
-                                 "hint: --points FILE, or patchlight init MODEL -o SCENE.toml");
+    throw InputError(scene.file,
+                     "has no sensors, at which a year could be computed\n"
+                     "hint: --points FILE, or patchlight init MODEL -o SCENE.toml");
   return scene;
 }
 
@@ -114,8 +116,8 @@ std::string with_error(const Measure& measure, int digits) {
 }
 
 std::string summary(const AnnualMetrics& metrics) {
-  std::vector<TextRow> rows{{"room", "sensors", "sDA300/50 %", "ASE1000/250 %", "DA300 %", "UDI 300-3000 %",
-                             "mean lx", "EN 17037"}};
+  std::vector<TextRow> rows{
+      {"room", "sensors", "sDA300/50 %", "ASE1000/250 %", "DA300 %", "UDI 300-3000 %", "mean lx", "EN 17037"}};
   constexpr std::array<const char*, 4> grades = {"none", "minimum", "medium", "high"};
   const auto add = [&](const RoomYear& room) {
     const auto of = [&](RoomMeasure m) { return room.measures[static_cast<std::size_t>(m)]; };
@@ -136,11 +138,11 @@ std::string costs(const AnnualLight& light) {
   std::ostringstream text;
   double all = 0;
   text << "CPU seconds:";
-  for (const StageCost& cost : light.costs) {
+  for (const PhaseCost& cost : light.costs) {
     all += cost.cpu_seconds;
-    if (cost.cpu_seconds >= 0.05) text << ' ' << name_of(cost.stage) << ' ' << rounded(cost.cpu_seconds, 2) << ';';
+    text << ' ' << cost.phase << ' ' << rounded(cost.cpu_seconds, 2) << ';';
   }
-  text << " in all " << rounded(all, 3) << '\n';
+  text << " all " << rounded(all, 3) << '\n';
   return text.str();
 }
 
@@ -195,6 +197,7 @@ ExitCode annual(const AnnualArguments& arguments) {
                                     arguments.last_hour, arguments.options.sky_division, arguments.command_line});
   }
   line.hide();
+  for (const Diagnostic& warning : light.warnings) print_diagnostic("warning", warning);
   print_notes(merged({weather.notes, light.notes}), arguments.quiet);
   if (arguments.quiet) return good;
   std::cout << summary(metrics) << costs(light) << "wrote " << shown_name(arguments.output.string()) << std::endl;

@@ -168,9 +168,9 @@ struct Information {
   ExitCode code = good;
 };
 
-using Arguments =
-    std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments, AnnualArguments, FormFactorArguments,
-                 ComparisonArguments, ConvergenceArguments, CrosscheckArguments, SelftestArguments, RenderArguments>;
+using Arguments = std::variant<Information, SolveArguments, CheckArguments, InitArguments, PlanArguments,
+                               AnnualArguments, FormFactorArguments, ComparisonArguments, ConvergenceArguments,
+                               CrosscheckArguments, SelftestArguments, RenderArguments>;
 
 /// Parses the command line without reading or writing files. \throws UsageError.
 Arguments parse_arguments(int count, const char* const* values);

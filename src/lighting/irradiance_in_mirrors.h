@@ -4,9 +4,9 @@
 #include "patchlight/mesh/patch_mesh.h"
 
 #include "lighting/direct_irradiance.h"
+#include "lighting/light_source.h"
 #include "lighting/receiver.h"
 #include "lighting/sky_irradiance.h"
-#include "lighting/light_source.h"
 
 #include <span>
 
@@ -22,8 +22,8 @@ DirectIrradiance irradiance_in_mirrors(const LightSampler& lights, const PatchMe
 DirectIrradiance irradiance_in_mirrors(const LightSampler& lights, std::span<const SurfacePoint> points,
                                        const LightingOptions& options, const Observer& observer);
 
-/// The light of the sky in mirrors and clear faces, ray by ray: that of a receiver by so many points of it, or by as many
-/// directions at a point. The sum of weight times radiance is the mean irradiance. The lighting must have mirrors.
+/// The light of the sky in mirrors and clear faces, ray by ray: that of a receiver by so many points of it, or by as
+/// many directions at a point. The sum of weight times radiance is the mean irradiance. The lighting must have mirrors.
 void visit_sky_in_mirrors(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, std::uint32_t key,
                           const AtSky& at_sky);
 

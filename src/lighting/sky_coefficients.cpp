@@ -17,7 +17,7 @@
 namespace patchlight {
 namespace {
 
-// What arrives from one division.
+// The light of one division.
 struct OfDivision {
   std::size_t division = 0;
   Spectrum irradiance;
@@ -58,7 +58,7 @@ std::vector<SparseCoefficients> matrices_of(const std::vector<Row>& rows, std::s
   return all;
 }
 
-// `samples_at` says how many samples a receiver takes, a power of two.
+// `samples_at` returns the number of samples of a receiver, a power of two.
 std::vector<SparseCoefficients> coefficients_of(const Lighting& lighting, std::size_t count,
                                                 const std::function<Receiver(std::size_t)>& receiver_at,
                                                 const std::function<std::uint32_t(std::size_t)>& samples_at,

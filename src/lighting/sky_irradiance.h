@@ -31,8 +31,8 @@ struct SkySeen {
   std::size_t aimed = 0;              ///< rays towards openings
 };
 
-/// A ray that has got to the sky: its direction, and its weight per band, by which the radiance there counts in the mean
-/// irradiance of the receiver, sr.
+/// A ray that has got to the sky: its direction, and its weight per band, the irradiance of the receiver
+/// by a radiance of 1 along it, sr.
 using AtSky = std::function<void(const Vector& direction, const Spectrum& weight)>;
 
 /// The light of the sky that rays find.

@@ -29,23 +29,23 @@ struct Measure {
 
 /// The measures of a sensor. Shares are of the occupied hours, in percent.
 enum class SensorMeasure : std::size_t {
-  mean_illuminance,    ///< lx, over the occupied hours
-  autonomy,            ///< DA: at least 300 lx (Reinhart and Walkenhorst 2001)
-  continuous,          ///< cDA: below 300 lx an hour counts by E / 300 lx (Rogers 2006)
-  udi_below_100,       ///< useful daylight illuminance (Nabil and Mardaljevic 2005; Mardaljevic et al. 2012)
-  udi_100_to_300,      ///< supplementary
-  udi_300_to_3000,     ///< autonomous
-  udi_above_3000,      ///< exceeded
-  sunlit_hours,        ///< hours with more than 1000 lx straight from the sun (IES LM-83-12), not percent
-  daylight_factor,     ///< percent, under a CIE overcast sky
-  half_of_daylight     ///< lx that are reached in half of the daylight hours (EN 17037:2018)
+  mean_illuminance,  ///< lx, over the occupied hours
+  autonomy,          ///< DA: at least 300 lx (Reinhart and Walkenhorst 2001)
+  continuous,        ///< cDA: below 300 lx an hour counts by E / 300 lx (Rogers 2006)
+  udi_below_100,     ///< useful daylight illuminance (Nabil and Mardaljevic 2005; Mardaljevic et al. 2012)
+  udi_100_to_300,    ///< supplementary
+  udi_300_to_3000,   ///< autonomous
+  udi_above_3000,    ///< exceeded
+  sunlit_hours,      ///< hours with more than 1000 lx straight from the sun (IES LM-83-12), not percent
+  daylight_factor,   ///< percent, under a CIE overcast sky
+  half_of_daylight   ///< lx that are reached in half of the daylight hours (EN 17037:2018)
 };
 inline constexpr std::size_t sensor_measures = 10;
 
 /// The measures of a room, or of all sensors. Means are over its sensors, without those inside walls.
 enum class RoomMeasure : std::size_t {
-  spatial_autonomy,    ///< sDA300/50%: percent of sensors with DA of at least 50 % (IES LM-83-12)
-  sunlight_exposure,   ///< ASE1000/250: percent of sensors with more than 250 sunlit hours (IES LM-83-12)
+  spatial_autonomy,   ///< sDA300/50%: percent of sensors with DA of at least 50 % (IES LM-83-12)
+  sunlight_exposure,  ///< ASE1000/250: percent of sensors with more than 250 sunlit hours (IES LM-83-12)
   mean_illuminance,
   mean_autonomy,
   mean_continuous,
@@ -54,9 +54,9 @@ enum class RoomMeasure : std::size_t {
   mean_udi_300_to_3000,
   mean_udi_above_3000,
   median_daylight_factor,
-  half_of_plane,       ///< lx that half of the sensors reach in half of the daylight hours (EN 17037, target)
-  most_of_plane,       ///< lx that 95 % of the sensors reach in half of the daylight hours (EN 17037, minimum)
-  grade                ///< EN 17037 table A.1: 0 none, 1 minimum, 2 medium, 3 high
+  half_of_plane,  ///< lx that half of the sensors reach in half of the daylight hours (EN 17037, target)
+  most_of_plane,  ///< lx that 95 % of the sensors reach in half of the daylight hours (EN 17037, minimum)
+  grade           ///< EN 17037 table A.1: 0 none, 1 minimum, 2 medium, 3 high
 };
 inline constexpr std::size_t room_measures = 13;
 

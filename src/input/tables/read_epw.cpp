@@ -1,8 +1,7 @@
-#include "input/tables/read_tables.h"
-
 #include "patchlight/base/error.h"
 
 #include "base/words.h"
+#include "input/tables/read_tables.h"
 #include "input/text.h"
 #include "light/photometry.h"
 #include "scene/spectral_bands.h"
@@ -115,8 +114,8 @@ void require_zone_of(const Line& place, const Place& at, double zone) {
   const double off = zone - at.longitude / 15;
   if (std::abs(off) <= 4 || std::abs(std::abs(off) - 24) <= 4) return;
   throw InputError(place.where, "found the time zone " + shortest(zone) + " h and the longitude " +
-                                    shortest(at.longitude) +
-                                    " degrees, which are " + shortest(std::round(10 * std::abs(off)) / 10) +
+                                    shortest(at.longitude) + " degrees, which are " +
+                                    shortest(std::round(10 * std::abs(off)) / 10) +
                                     " h apart; expected both east positive");
 }
 
@@ -145,11 +144,12 @@ Diagnostics notes_on(const WeatherYear& year, const BelowHorizon& below, std::si
     notes.push_back({DiagnosticCode::simplified_light,
                      year.file + ": the leap day is left out, so that the year has 8760 hours", leap_hours});
   if (below.hours > 0)
-    notes.push_back({DiagnosticCode::sun_below_horizon,
-                     year.file + ": in " + std::to_string(below.hours) +
-                         " hours the file states direct sunlight, but the sun is below the horizon in their middle; its " +
-                         shortest(std::round(below.watt_hours)) + " Wh/m^2 are left out",
-                     below.hours});
+    notes.push_back(
+        {DiagnosticCode::sun_below_horizon,
+         year.file + ": in " + std::to_string(below.hours) +
+             " hours the file states direct sunlight, but the sun is below the horizon in their middle; its " +
+             shortest(std::round(below.watt_hours)) + " Wh/m^2 are left out",
+         below.hours});
   return notes;
 }
 
@@ -207,10 +207,11 @@ WeatherYear parse_epw_year(const std::string& text, const std::string& file) {
       continue;
     }
     if (expected.month > 12 || month != expected.month || day != expected.day || hour != expected.hour)
-      throw InputError(line.where, "found " + in_words(month, day, hour + 1) + "; expected " +
-                                       (expected.month > 12 ? "the end of the year"
-                                                            : in_words(expected.month, expected.day, expected.hour + 1)) +
-                                       ": a year has all 8760 hours in order");
+      throw InputError(line.where,
+                       "found " + in_words(month, day, hour + 1) + "; expected " +
+                           (expected.month > 12 ? "the end of the year"
+                                                : in_words(expected.month, expected.day, expected.hour + 1)) +
+                           ": a year has all 8760 hours in order");
     const Instant local{2000, month, day, static_cast<double>(hour)};
     year.hours.push_back(weather_of(place, line, local));
     const WeatherHour& weather = year.hours.back();

@@ -50,8 +50,8 @@ void expect_duality(const SolvedTransport& solved) {
   const Field arriving = numbers(size, 1, 2);
   const Field weights = AdjointLight(solved).weights(seen, {0, 0, 0}, 1e-10);
   const RadiosityProblem problem{solved.scattering, Field::Zero(size, 1), solved.area, arriving};
-  const Solution solution = solve(*solved.light, problem,
-                                  {.solver = usual_solver(*solved.light, problem), .relative_error = 1e-10});
+  const Solution solution =
+      solve(*solved.light, problem, {.solver = usual_solver(*solved.light, problem), .relative_error = 1e-10});
   ASSERT_TRUE(solution.converged);
   for (Eigen::Index k = 0; k < sensors; ++k) {
     const double forward = (seen.col(k) * solution.radiosity.col(0)).sum();

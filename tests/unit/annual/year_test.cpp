@@ -19,9 +19,12 @@ constexpr double ground = 0.2;
 Scene office_with_sensors() {
   Scene scene = test::daylight_office();
   scene.photometric = true;
-  scene.sensors = {{"desk", {{Point(2, 0.7, 0.8), Vector::UnitZ()}, {Point(1.2, 2.5, 0.85), Vector::UnitZ()},
-                             {Point(3.4, 4.3, 0.8), Vector::UnitZ()}, {Point(2, 4.9, 1.5), -Vector::UnitY()},
-                             {Point(1, 3.5, 2.9), -Vector::UnitZ()}}}};
+  scene.sensors = {{"desk",
+                    {{Point(2, 0.7, 0.8), Vector::UnitZ()},
+                     {Point(1.2, 2.5, 0.85), Vector::UnitZ()},
+                     {Point(3.4, 4.3, 0.8), Vector::UnitZ()},
+                     {Point(2, 4.9, 1.5), -Vector::UnitY()},
+                     {Point(1, 3.5, 2.9), -Vector::UnitZ()}}}};
   return scene;
 }
 
@@ -40,10 +43,18 @@ Daylight daylight_at(const SolarPosition& sun, double direct, double diffuse, co
 Year twelve_hours(const Scene& scene) {
   Year year{.hours = {}, .ground_reflectance = ground};
   for (const auto& [altitude, azimuth, direct, diffuse] :
-       std::initializer_list<std::array<double, 4>>{{10, 140, 400, 60},  {20, 160, 600, 80}, {27, 180, 750, 90},
-                                                    {15, 215, 500, 70},  {40, 120, 700, 100}, {55, 180, 850, 110},
-                                                    {62, 240, 800, 120}, {35, 265, 300, 200}, {8, 70, 200, 50},
-                                                    {30, 300, 650, 90},  {45, 200, 0, 300},   {12, 150, 20, 110}})
+       std::initializer_list<std::array<double, 4>>{{10, 140, 400, 60},
+                                                    {20, 160, 600, 80},
+                                                    {27, 180, 750, 90},
+                                                    {15, 215, 500, 70},
+                                                    {40, 120, 700, 100},
+                                                    {55, 180, 850, 110},
+                                                    {62, 240, 800, 120},
+                                                    {35, 265, 300, 200},
+                                                    {8, 70, 200, 50},
+                                                    {30, 300, 650, 90},
+                                                    {45, 200, 0, 300},
+                                                    {12, 150, 20, 110}})
     year.hours.push_back(daylight_at({altitude, azimuth}, direct, diffuse, scene));
   return year;
 }
@@ -82,9 +93,7 @@ TEST(Year, HasTheLightOfEachHourByPairs) {
   expect_hours_as_solved(office_with_sensors(), small_request(Storage::tiles));
 }
 
-TEST(Year, HasTheLightOfEachHourByRays) {
-  expect_hours_as_solved(office_with_sensors(), small_request(Storage::rays));
-}
+TEST(Year, HasTheLightOfEachHourByRays) { expect_hours_as_solved(office_with_sensors(), small_request(Storage::rays)); }
 
 TEST(Year, DivisionsSumUpToTheDaylightFactor) {
   const Scene scene = office_with_sensors();

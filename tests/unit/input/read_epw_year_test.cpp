@@ -130,7 +130,8 @@ TEST(ReadEpwYear, RefusesWrongColumns) {
 }
 
 TEST(ReadEpwYear, RefusesAZoneFarFromTheLongitude) {
-  expect_in(refusal(lines_of({.place = "LOCATION,Denver,-,USA,X,0,39.7,-105.2,7.0,1600"})), "city.epw:1: found the time zone 7");
+  expect_in(refusal(lines_of({.place = "LOCATION,Denver,-,USA,X,0,39.7,-105.2,7.0,1600"})),
+            "city.epw:1: found the time zone 7");
 }
 
 }  // namespace
