@@ -10,7 +10,7 @@ namespace {
 
 // F itself where it is reciprocal; else it is by rows of rays.
 std::shared_ptr<const TransportOperator> adjoint_of(const SolvedTransport& solved) {
-  if (solved.light->is_reciprocal()) return solved.light;
+  if (solved.light == nullptr || solved.light->is_reciprocal()) return solved.light;
   const auto& with_pockets = dynamic_cast<const RaysWithPockets&>(*solved.light);
   return std::make_shared<RayTransport>(adjoint_of(with_pockets.rays(), solved.area));
 }
@@ -29,6 +29,7 @@ AdjointLight::AdjointLight(const SolvedTransport& solved) : solved_(solved), adj
 
 Field AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
                             const Observer& observer) const {
+  if (adjoint_ == nullptr) return Field::Zero(seen.rows(), seen.cols());
   const Eigen::ArrayXd area = solved_.area.array();
   const Scattering scattering = of_bands(solved_.scattering, bands);
   const Eigen::ArrayXd per_area = (area > 0).select(area.inverse(), 0.0);

@@ -152,6 +152,8 @@ void add_reflected(const RunOfYear& run, const SolvedTransport& solved, const Ad
 void add_all_reflected(const RunOfYear& run, const LightOnPatches& light, const std::vector<Sensor>& sensors,
                        LightAtSensors& at) {
   const Simulation& simulation = run.simulation;
+  // Without interreflection sensors see no light that patches have reflected, as in read_sensors().
+  if (!simulates(simulation.plan, Effect::interreflection)) return;
   const Lighting& lighting = run.world().sensor_lighting();
   const Occluder& occluder = run.world().all_faces();
   const Eigen::Index bands = number_of_bands(run.year.scene);

@@ -163,7 +163,7 @@ Finish add_annual(CLI::App& tool) {
   add_patch_options(command, to->model, request);
   add_accuracy_options(command, request);
   add_method_options(command, request, true);
-  add_effect_options(command, request, effects_but({Effect::sun, Effect::luminaires}));
+  add_effect_options(command, request, effects_but({Effect::sun, Effect::luminaires, Effect::sky}));
   add_sampling_options(command, request);
   add_machine_options(command, request);
   add_quiet_option(command, arguments.quiet);

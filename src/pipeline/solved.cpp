@@ -73,10 +73,11 @@ SolvedWith solve_for_interest(const Run& run, const Simulation& simulation, cons
   }
 }
 
-// In all bands of a problem.
-SolvedTransport kept_transport(const RadiosityProblem& problem, const MeshTransport& transport) {
-  SolvedTransport kept{{}, transport.rows, problem.scattering, problem.area};
+// In all bands of a problem. Rows on demand do not outlive the mesh of the run.
+SolvedTransport kept_transport(const Plan& plan, const RadiosityProblem& problem, const MeshTransport& transport) {
+  SolvedTransport kept{{}, nullptr, problem.scattering, problem.area};
   if (transport.rays) kept.light = transport.rays;
+  if (!transport.rays && keeps_entries(plan.assembly.storage)) kept.light = transport.rows;
   for (Eigen::Index band = 0; band < problem.exitance.cols(); ++band) kept.bands.push_back(band);
   return kept;
 }
@@ -152,7 +153,7 @@ Simulation solved(const Run& run, const MeshToSolve& meshed, const MeshTransport
     simulation.enclosed = enclosed_patches(run.scene, run.world->all_faces(), simulation.mesh);
   if (run.with.exchange || run.with.ray_exchange)
     simulation.notes = merged({std::move(simulation.notes), notes_on_hidden_lamps(run.scene, simulation)});
-  if (run.with.keeps_transport) simulation.transports = {kept_transport(simulation.problem, transport)};
+  if (run.with.keeps_transport) simulation.transports = {kept_transport(meshed.plan, simulation.problem, transport)};
   if (transport.rays) return solved_by_rays(run, std::move(simulation), transport);
 
   const bool keeps = keeps_entries(meshed.plan.assembly.storage);
