@@ -4,7 +4,7 @@ _patchlight() {
   local words=
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    words="check init solve render plan crosscheck relight form-factors compare-solvers convergence selftest help --help --version"
+    words="check init solve render annual plan crosscheck relight form-factors compare-solvers convergence selftest help --help --version"
   else
     case "$command,$before" in
       check,--format) words="obj ply stl off dae ifc gltf glb hbjson rad xml toml" ;;
@@ -27,6 +27,13 @@ _patchlight() {
       render,--unit) words="m cm mm in ft" ;;
       render,--up) words="y z" ;;
       render,--picture-quality) words="draft final" ;;
+      annual,--format) words="obj ply stl off dae ifc gltf glb hbjson rad xml toml" ;;
+      annual,--unit) words="m cm mm in ft" ;;
+      annual,--up) words="y z" ;;
+      annual,--sides) words="auto front both" ;;
+      annual,--method) words="auto pairs rays on-demand" ;;
+      annual,--sky-division) words="1 2 4" ;;
+      annual,--estimator) words="auto area point-polygon hemisphere contour" ;;
       plan,--format) words="obj ply stl off dae ifc gltf glb hbjson rad xml toml" ;;
       plan,--unit) words="m cm mm in ft" ;;
       plan,--up) words="y z" ;;
@@ -69,6 +76,7 @@ _patchlight() {
         init) words="--format --unit --up -o --output -h --help --confine" ;;
         solve) words="--format --unit --up --set --only --exclude --simplify --maintenance-factor --sky --sun --ground --weather -o --output --html --json --lightmap --texel --picture --camera --projection --view --size --exposure --false-color --picture-quality --points --points-output --map --map-range --patches --max-edge --sides --accuracy --time-limit --focus --no-refine --error-bars --no-error-bars --method --rays --form-factors --checkpoint --enable --disable --threads --memory --discard -q --quiet -v --verbose -h --help --bands --color-error --no-merge --confine --series --picture-error --picture-samples --picture-error-map --ambient-occlusion --no-contact-lines --graded-edges --no-closure --solver --relaxation --tolerance --max-iterations --max-rows --samples --estimator --seed" ;;
         render) words="--format --unit --up --set --only --exclude --simplify --maintenance-factor --solution -o --output --html --lightmap --texel --difference --observers --sky --sun --ground --weather --camera --projection --view --size --exposure --false-color --picture-quality --threads -q --quiet -h --help --bands --color-error --no-merge --confine --picture-error --picture-samples --picture-error-map" ;;
+        annual) words="--format --unit --up --set --only --exclude --simplify --maintenance-factor --ground --weather --hours -o --output --points --patches --max-edge --sides --accuracy --time-limit --focus --no-refine --error-bars --no-error-bars --method --rays --enable --disable --threads --memory -q --quiet -h --help --bands --color-error --no-merge --confine --sky-division --no-contact-lines --samples --estimator --seed" ;;
         plan) words="--format --unit --up --set --only --exclude --simplify --maintenance-factor --sky --sun --ground --weather --json --patches --max-edge --sides --accuracy --time-limit --focus --no-refine --error-bars --no-error-bars --method --rays --enable --disable --threads --memory -h --help --bands --color-error --no-merge --confine --no-contact-lines --graded-edges --no-closure --samples --estimator --seed" ;;
         crosscheck) words="--format --unit --up --set --only --exclude --simplify --maintenance-factor --sky --sun --ground --weather --json --patches --max-edge --sides --accuracy --time-limit --focus --no-refine --method --rays --enable --disable --paths --sample-patches --margin --threads --memory -q --quiet -h --help --bands --color-error --no-merge --confine --no-contact-lines --graded-edges --no-closure --samples --estimator --seed" ;;
         relight) words="--up --set --sky --sun --ground --weather -o --output --html --json --lightmap --texel --picture --camera --projection --view --size --exposure --false-color --picture-quality --points --points-output --map --map-range --enable --disable --threads --memory --discard -q --quiet -v --verbose -h --help --series --picture-error --picture-samples --picture-error-map --ambient-occlusion --no-closure --solver --relaxation --tolerance --max-iterations --max-rows" ;;

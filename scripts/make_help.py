@@ -40,13 +40,17 @@ FILES = {
     "relight": [("FOLDER", "Form factors and scene, from patchlight form-factors.")],
     "form-factors": [("FOLDER/info.json", "The facts of the form factors: options, sizes and errors."),
                      ("FOLDER/scene.json", "The scene, which patchlight relight reads.")],
+    "annual": [("FOLDER/illuminance.npy, FOLDER/illuminance.ill", "The illuminance of all hours and sensors, lx."),
+               ("FOLDER/rooms.csv, FOLDER/sensors.csv", "The measures of rooms and sensors, with standard errors."),
+               ("FOLDER/hours.csv, FOLDER/annual.json", "Sun and sky of all hours, and all facts.")],
     "compare-solvers": [("FOLDER/compare.csv, FOLDER/compare.json", "The table of all solvers, and all facts.")],
     "convergence": [("FOLDER/study.csv, FOLDER/study.json", "The table of all runs, and all facts.")],
 }
 
 SEE_ALSO = {
     "check": ["init", "plan"], "init": ["check", "solve"], "solve": ["plan", "render", "crosscheck"],
-    "render": ["solve"], "plan": ["solve"], "crosscheck": ["solve", "selftest"], "relight": ["form-factors", "solve"],
+    "render": ["solve"], "annual": ["init", "solve"], "plan": ["solve"], "crosscheck": ["solve", "selftest"],
+    "relight": ["form-factors", "solve"],
     "form-factors": ["relight"], "compare-solvers": ["convergence"], "convergence": ["compare-solvers"],
     "selftest": ["crosscheck"],
 }

@@ -4,6 +4,8 @@
 /// The whole library: simulate() takes a Scene and a Request and returns a Simulation.
 
 #include "patchlight/accuracy/error_bars.h"
+#include "patchlight/annual/annual.h"
+#include "patchlight/annual/metrics.h"
 #include "patchlight/base/diagnostics.h"
 #include "patchlight/base/error.h"
 #include "patchlight/base/field.h"
@@ -27,6 +29,7 @@
 #include "patchlight/scene/scene.h"
 #include "patchlight/scene/sensor.h"
 #include "patchlight/scene/sides.h"
+#include "patchlight/scene/year.h"
 #include "patchlight/simulate.h"
 #include "patchlight/solve/problem.h"
 #include "patchlight/solve/solve.h"

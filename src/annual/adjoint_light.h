@@ -17,7 +17,8 @@ class AdjointLight {
   /// Keeps a reference to `solved`. With rows of rays it makes F* from their entries, O(rays) memory.
   explicit AdjointLight(const SolvedTransport& solved);
 
-  /// 0 without a transport, as then sensors see no reflected light. W of each column of `seen`, g; `bands` has its band, counted within SolvedTransport::bands. \throws Canceled.
+  /// 0 without a transport, as then sensors see no reflected light. W of each column of `seen`, g; `bands` has its
+  /// band, counted within SolvedTransport::bands. \throws Canceled.
   Field weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
                 const Observer& observer = {}) const;
 

@@ -18,7 +18,6 @@ constexpr std::size_t at(SensorMeasure measure) { return static_cast<std::size_t
 constexpr std::size_t at(RoomMeasure measure) { return static_cast<std::size_t>(measure); }
 
 constexpr double target = 300;  // lx
-constexpr std::array<double, 3> udi_limits = {100, 300, 3000};
 
 // A year at one sensor.
 struct Series {
@@ -57,8 +56,8 @@ OfSensor measures_of(const Series& series, const CountedHours& hours) {
     found[at(SensorMeasure::mean_illuminance)] += E;
     found[at(SensorMeasure::autonomy)] += E >= target ? 1 : 0;
     found[at(SensorMeasure::continuous)] += std::min(1.0, E / target);
-    const auto bin = std::upper_bound(udi_limits.begin(), udi_limits.end(), E) - udi_limits.begin();
-    found[at(SensorMeasure::udi_below_100) + static_cast<std::size_t>(bin)] += 1;
+    const std::size_t bin = (E >= 100 ? 1 : 0) + (E >= 300 ? 1 : 0) + (E > 3000 ? 1 : 0);
+    found[at(SensorMeasure::udi_below_100) + bin] += 1;
     found[at(SensorMeasure::sunlit_hours)] += series.sun(hour) > 1000 ? 1 : 0;
   }
   found[at(SensorMeasure::mean_illuminance)] /= counted;

@@ -61,7 +61,7 @@ Year twelve_hours(const Scene& scene) {
 
 Request small_request(Storage storage) {
   Request request;
-  request.mesh.patches = 1500;
+  request.mesh.patches = 1000;
   request.assembly.storage = storage;
   request.accuracy.cheap_error_bars = true;
   if (storage == Storage::rays) request.solver.solver = Solver::gmres;
