@@ -17,14 +17,14 @@ std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occlude
   return planes;
 }
 
-Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors) {
+Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors, std::uint32_t each) {
   const PatchMesh& mesh = by.mesh;
   Field seen = Field::Zero(mesh.size(), static_cast<Eigen::Index>(sensors.size()) * by.bands);
   parallel_for(sensors.size(), [&](std::size_t k) {
     const Sensor& sensor = sensors[k];
     const auto first = static_cast<Eigen::Index>(k) * by.bands;
     const auto add = [&](PatchIndex j, const Spectrum& weight) { seen.row(j).segment(first, by.bands) += weight; };
-    for (const HemisphereHit& hit : by.hemisphere.hits(sensor, by.each, 0).all) {
+    for (const HemisphereHit& hit : by.hemisphere.hits(sensor, each, 0).all) {
       // A sensor on a face does not see the patches of that face.
       const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
       if (!hit.is_mirrored && height <= by.tolerance) continue;

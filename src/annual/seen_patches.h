@@ -26,16 +26,15 @@ std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occlude
 
 /// How sensors look at patches.
 struct SeenBy {
-  const HemisphereRays& hemisphere;
+  HemisphereRays hemisphere;
   const PatchMesh& mesh;
-  std::span<const PatchPlane> planes;
+  std::vector<PatchPlane> planes;
   Eigen::Index bands = 1;
-  std::uint32_t each = 0;  ///< rays in each of most_replicates
-  double tolerance = 0;    ///< a sensor nearer to the plane of a patch lies in it, m
+  double tolerance = 0;  ///< a sensor nearer to the plane of a patch lies in it, m
 };
 
 /// The irradiance at each sensor by a radiosity of 1 on each patch, straight or through panes and mirrors: a row for
-/// each patch, for each sensor one column after the other for its bands.
-Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors);
+/// each patch, for each sensor one column after the other for its bands. `each` rays in each of most_replicates.
+Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors, std::uint32_t each);
 
 }  // namespace patchlight

@@ -16,8 +16,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -148,43 +150,103 @@ void add_reflected(const RunOfYear& run, const SolvedTransport& solved, const Ad
   }
 }
 
-// The same for all sensors, block by block.
-void add_all_reflected(const RunOfYear& run, const LightOnPatches& light, const std::vector<Sensor>& sensors,
-                       LightAtSensors& at) {
-  const Simulation& simulation = run.simulation;
-  // Without interreflection sensors see no light that patches have reflected, as in read_sensors().
-  if (!simulates(simulation.plan, Effect::interreflection)) return;
-  const Lighting& lighting = run.world().sensor_lighting();
-  const Occluder& occluder = run.world().all_faces();
-  const Eigen::Index bands = number_of_bands(run.year.scene);
-  const HemisphereRays hemisphere(simulation.mesh, occluder, *lighting.paths.optics(), bands, run.seed(),
-                                  lighting.mirrors ? &lighting.mirrors->aim : nullptr);
-  const std::vector<PatchPlane> planes = planes_of(simulation.mesh, occluder, run.observer);
-  const SeenBy seen_by{hemisphere,
-                       simulation.mesh,
-                       planes,
-                       bands,
-                       static_cast<std::uint32_t>(run.options.rays) / most_replicates,
-                       tolerance_of_shapes / occluder.frame().scale};
-  const Eigen::ArrayXd exposed = over_exposed_part(simulation.mesh, simulation.transport.lost, simulation.problem.area);
-  std::vector<AdjointLight> adjoints;
-  for (const SolvedTransport& solved : simulation.transports) adjoints.emplace_back(solved);
-  for (std::size_t begin = 0; begin < sensors.size(); begin += sensors_at_once) {
-    const Block block{begin, std::min(sensors.size(), begin + sensors_at_once)};
-    const double done = static_cast<double>(begin) / static_cast<double>(sensors.size());
+// How the sensors of a run see its patches.
+class LookOfSensors {
+ public:
+  explicit LookOfSensors(const RunOfYear& run)
+      : lighting_(run.world().sensor_lighting()),
+        by_{HemisphereRays(run.simulation.mesh, run.world().all_faces(), *lighting_.paths.optics(),
+                           number_of_bands(run.year.scene), run.seed(),
+                           lighting_.mirrors ? &lighting_.mirrors->aim : nullptr),
+            run.simulation.mesh, planes_of(run.simulation.mesh, run.world().all_faces(), run.observer),
+            number_of_bands(run.year.scene), tolerance_of_shapes / run.world().all_faces().frame().scale} {}
+
+  // seen_patches() by about so many rays.
+  Field seen(std::span<const Sensor> sensors, int rays) const {
+    return seen_patches(by_, sensors, static_cast<std::uint32_t>(rays) / most_replicates);
+  }
+
+ private:
+  const Lighting& lighting_;
+  SeenBy by_;
+};
+
+// Calls use(block) for all sensors.
+void for_blocks(const RunOfYear& run, std::size_t sensors, const std::function<void(Block)>& use) {
+  for (std::size_t begin = 0; begin < sensors; begin += sensors_at_once) {
+    const double done = static_cast<double>(begin) / static_cast<double>(sensors);
     if (run.observer && !run.observer({.stage = Stage::solve, .fraction = done})) throw Canceled();
-    const Field seen = seen_patches(seen_by, std::span(sensors).subspan(begin, block.size()));
-    for (std::size_t t = 0; t < adjoints.size(); ++t)
-      add_reflected(run, simulation.transports[t], adjoints[t], seen, exposed, light, block, at);
+    use({begin, std::min(sensors, begin + sensors_at_once)});
   }
 }
 
-LightOnPatches light_on_patches(const RunOfYear& run) {
+// The light that all patches reflect to the sensors, block by block.
+void add_all_reflected(const RunOfYear& run, const LookOfSensors& look, const LightOnPatches& light,
+                       const std::vector<Sensor>& sensors, LightAtSensors& at) {
+  const Simulation& simulation = run.simulation;
+  const Eigen::ArrayXd exposed = over_exposed_part(simulation.mesh, simulation.transport.lost, simulation.problem.area);
+  std::vector<AdjointLight> adjoints;
+  for (const SolvedTransport& solved : simulation.transports) adjoints.emplace_back(solved);
+  for_blocks(run, sensors.size(), [&](Block block) {
+    const Field seen = look.seen(std::span(sensors).subspan(block.begin, block.size()), run.options.rays);
+    for (std::size_t t = 0; t < adjoints.size(); ++t)
+      add_reflected(run, simulation.transports[t], adjoints[t], seen, exposed, light, block, at);
+  });
+}
+
+// The patches whose sunlight takes its exact share, 1 for each. The sum over all sensors of what light on a patch adds,
+// relative to their own light, follows from one adjoint solution. A patch that one ray finds all lit or all dark is off
+// by up to half of its sunlight. In the square root of the sum of squares the others may be off by a thousandth of the
+// mean sensor.
+std::vector<std::uint8_t> important_patches(const RunOfYear& run, const LookOfSensors& look, const FreeSensors& free,
+                                            const Readings& reference) {
+  constexpr int few_rays = 512;
+  constexpr double brightest_sun = 100'000, allowed = 1e-3;
+  const Simulation& simulation = run.simulation;
+  const Eigen::Index bands = number_of_bands(run.year.scene);
+  Field seen = Field::Zero(simulation.mesh.size(), bands);
+  for_blocks(run, free.sensors.size(), [&](Block block) {
+    const Field of_block = look.seen(std::span(free.sensors).subspan(block.begin, block.size()), few_rays);
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      const auto number = static_cast<std::size_t>(free.numbers[block.begin + k]);
+      const double own = std::max(1.0, sensor_value(reference, number).value);
+      seen += of_block.middleCols(static_cast<Eigen::Index>(k) * bands, bands) / own;
+    }
+  });
+  Eigen::ArrayXd importance = Eigen::ArrayXd::Zero(simulation.mesh.size());
+  for (const SolvedTransport& solved : simulation.transports) {
+    std::vector<Eigen::Index> own(solved.bands.size());
+    std::iota(own.begin(), own.end(), Eigen::Index{0});
+    Field of_color = seen(Eigen::all, solved.bands);
+    of_color.colwise() *= solved_share(simulation, solved);
+    const Field weights = AdjointLight(solved).weights(of_color, own, 0.01);
+    for (const Eigen::Index b : own)
+      importance +=
+          static_cast<double>(run.sun_weight(static_cast<std::size_t>(solved.bands[static_cast<std::size_t>(b)]))) *
+          weights.col(b).max(0.0);
+  }
+  std::vector<std::size_t> order(simulation.mesh.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return importance[static_cast<Eigen::Index>(a)] < importance[static_cast<Eigen::Index>(b)];
+  });
+  std::vector<std::uint8_t> is_important(order.size(), 1);
+  double squares = 0;
+  const double limit = std::pow(allowed * static_cast<double>(free.sensors.size()), 2);
+  for (const std::size_t patch : order) {
+    squares += std::pow(0.5 * brightest_sun * importance[static_cast<Eigen::Index>(patch)], 2);
+    if (squares > limit) break;
+    is_important[patch] = 0;
+  }
+  return is_important;
+}
+
+LightOnPatches light_on_patches(const RunOfYear& run, std::span<const std::uint8_t> is_important) {
   const World& world = run.world();
   LightOnPatches light;
   light.sky = sky_coefficients(world.lighting(), run.simulation.mesh, run.divisions, run.sampling(), run.observer);
   light.sun = sunlight_on({world.lighting(), world.planned_scene(), world.tracing()}, run.simulation.mesh, light.sky[0],
-                          run.divisions, run.suns.directions, run.seed(), run.observer);
+                          run.divisions, run.suns.directions, {is_important, run.seed()}, run.observer);
   return light;
 }
 
@@ -300,7 +362,7 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   const SensorView reference = read_sensors(simulation, observer);
   clock.finish("sensors under an overcast sky");
 
-  // 2. Straight light of all divisions of the sky and all suns, on patches and at sensors.
+  // 2. Straight light of all divisions of the sky and all suns at the sensors.
   const RunOfYear run{of_year,
                       simulation,
                       options,
@@ -310,12 +372,18 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   const FreeSensors free = free_sensors(simulation);
   LightAtSensors at = straight_light(run, free.sensors);
   clock.finish("sky and sun at sensors");
-  const LightOnPatches light = light_on_patches(run);
-  clock.finish("sky and sun on patches");
 
-  // 3. All reflections of both.
-  add_all_reflected(run, light, free.sensors, at);
-  clock.finish("reflections");
+  // 3. The same on the patches, and all reflections of it. Without interreflection sensors see no light that patches
+  //    have reflected, as in read_sensors().
+  if (simulates(simulation.plan, Effect::interreflection)) {
+    const LookOfSensors look(run);
+    const std::vector<std::uint8_t> is_important = important_patches(run, look, free, reference.readings);
+    clock.finish("importance of patches");
+    const LightOnPatches light = light_on_patches(run, is_important);
+    clock.finish("sky and sun on patches");
+    add_all_reflected(run, look, light, free.sensors, at);
+    clock.finish("reflections");
+  }
 
   // 4. Hour by hour.
   const SkiesOfYear skies = skies_of(year, *read, run.divisions, observer);

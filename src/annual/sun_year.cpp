@@ -14,14 +14,21 @@
 #include <cstddef>
 #include <memory>
 #include <numbers>
+#include <numeric>
 
 namespace patchlight {
 namespace {
 
-// The light on one patch from one position of the sun.
-struct OfSun {
-  std::uint32_t sun = 0;
-  Spectrum share;
+// The suns that light a patch, with a share for each band.
+struct SunsOfPatch {
+  std::vector<std::uint32_t> suns;
+  std::vector<float> shares;
+
+  void add(std::uint32_t sun, const Spectrum& share) {
+    if (!(share > 0).any()) return;
+    suns.push_back(sun);
+    for (const double of_band : share) shares.push_back(static_cast<float>(of_band));
+  }
 };
 
 // The suns of each division, and the divisions with suns that touch each.
@@ -62,17 +69,44 @@ std::vector<std::size_t> coarse_of(const SkyDivisions& coarse, const SkyDivision
   return found;
 }
 
-// The mean share that arrives on a patch, by rays: where shadows are too many for their outlines.
-Spectrum share_by_rays(const Lighting& lighting, const Receiver& receiver, const Vector& sun, std::uint32_t key) {
-  static const auto samples = scrambled_sobol(256, 7);
+// The mean share that arrives on a patch, by rays from places of it.
+Spectrum share_by_rays(const Lighting& lighting, const Receiver& receiver, const Vector& sun, SamplePoints places) {
   std::vector<Segment> segments;
-  for (const auto& [u, v, s, t] : shifted(samples, key)) {
+  for (const auto& [u, v, s, t] : places) {
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
     segments.push_back({at.point, lighting.paths.beyond(at.point, sun), at.polygon, no_polygon});
   }
   if (segments.empty()) return Spectrum::Zero(lighting.bands);
   return lighting.paths.transmittance(segments).colwise().mean();
+}
+
+// Adds the light of some suns on a patch, exact where the outlines of all shadows are found in reasonable time.
+void add_exactly(const Lighting& lighting, const Shades& shades, const Receiver& receiver,
+                 std::span<const std::uint32_t> which, std::span<const Vector> suns, std::uint64_t key,
+                 SunsOfPatch& found) {
+  static const auto samples = scrambled_sobol(256, 7);
+  const Vector normal = receiver.place(0.5, 0.5).normal;
+  for (const std::uint32_t sun : which) {
+    const auto exact = shades.transmittance(receiver, LightPlace{suns[sun], 0});
+    const Spectrum share =
+        exact ? *exact : share_by_rays(lighting, receiver, suns[sun], shifted(samples, hash({key, sun})));
+    found.add(sun, normal.dot(suns[sun]) * share);
+  }
+}
+
+// The same by one ray from a random place to each sun: right in the mean over the suns.
+void add_by_single_rays(const Lighting& lighting, const Receiver& receiver, std::span<const std::uint32_t> which,
+                        std::span<const Vector> suns, std::uint64_t key, SunsOfPatch& found) {
+  std::vector<Segment> segments;
+  for (const std::uint32_t sun : which) {
+    const SurfacePoint at = receiver.place(hash({key, sun, 0}) * 0x1p-32, hash({key, sun, 1}) * 0x1p-32);
+    segments.push_back({at.point, lighting.paths.beyond(at.point, suns[sun]), at.polygon, no_polygon});
+  }
+  const Field shares = lighting.paths.transmittance(segments);
+  const Vector normal = receiver.place(0.5, 0.5).normal;
+  for (std::size_t k = 0; k < which.size(); ++k)
+    found.add(which[k], normal.dot(suns[which[k]]) * shares.row(static_cast<Eigen::Index>(k)));
 }
 
 // A lighting by one sun of normal irradiance 1 alone, with the mirrors by which its light goes.
@@ -90,8 +124,7 @@ const LightingOptions in_mirrors_alone{.mirrored_samples = 4, .only_in_mirrors =
 
 // Adds the light of suns that gets to patches over mirrors: that of all suns of a division from their mean direction.
 void add_over_mirrors(const SunWays& ways, const PatchMesh& mesh, const SkyDivisions& divisions,
-                      std::span<const Vector> suns, const Observer& observer,
-                      std::vector<std::vector<OfSun>>& of_patches) {
+                      std::span<const Vector> suns, const Observer& observer, std::vector<SunsOfPatch>& of_patches) {
   const std::vector<std::vector<std::uint32_t>> in = suns_of_each(divisions, suns);
   std::vector<Field> of_division(in.size());
   parallel_for(in.size(), Stage::direct_light, observer, [&](std::size_t d) {
@@ -104,28 +137,36 @@ void add_over_mirrors(const SunWays& ways, const PatchMesh& mesh, const SkyDivis
   });
   for (std::size_t d = 0; d < in.size(); ++d)
     for (Eigen::Index patch = 0; patch < of_division[d].rows(); ++patch) {
-      if (!(of_division[d].row(patch) > 0).any()) continue;
       for (const std::uint32_t sun : in[d])
-        of_patches[static_cast<std::size_t>(patch)].push_back({sun, of_division[d].row(patch)});
+        of_patches[static_cast<std::size_t>(patch)].add(sun, of_division[d].row(patch));
     }
 }
 
-std::vector<SparseSunlight> matrices_of(const std::vector<std::vector<OfSun>>& of_patches, std::size_t suns,
-                                        Eigen::Index bands) {
-  std::vector<SparseSunlight> all;
-  std::size_t count = 0;
-  for (const auto& of_patch : of_patches) count += of_patch.size();
-  for (Eigen::Index band = 0; band < bands; ++band) {
-    std::vector<Eigen::Triplet<float>> entries;
-    entries.reserve(count);
-    for (std::size_t patch = 0; patch < of_patches.size(); ++patch)
-      for (const auto& [sun, share] : of_patches[patch])
-        entries.emplace_back(static_cast<int>(sun), static_cast<int>(patch), static_cast<float>(share[band]));
-    SparseSunlight matrix(static_cast<Eigen::Index>(suns), static_cast<Eigen::Index>(of_patches.size()));
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    all.push_back(std::move(matrix));
+// Suns by patches of one band; light of one sun by several ways is added up.
+SparseSunlight matrix_of(const std::vector<SunsOfPatch>& of_patches, std::size_t suns, std::size_t band,
+                         std::size_t bands) {
+  Eigen::Index count = 0;
+  for (const SunsOfPatch& of_patch : of_patches) count += static_cast<Eigen::Index>(of_patch.suns.size());
+  SparseSunlight by_patch(static_cast<Eigen::Index>(of_patches.size()), static_cast<Eigen::Index>(suns));
+  by_patch.reserve(count);
+  for (std::size_t patch = 0; patch < of_patches.size(); ++patch) {
+    const auto& [of_suns, shares] = of_patches[patch];
+    const auto row = static_cast<Eigen::Index>(patch);
+    std::vector<std::size_t> order(of_suns.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return of_suns[a] < of_suns[b]; });
+    by_patch.startVec(row);
+    float* last = nullptr;
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const float share = shares[order[n] * bands + band];
+      if (n > 0 && of_suns[order[n]] == of_suns[order[n - 1]])
+        *last += share;
+      else
+        last = &(by_patch.insertBack(row, of_suns[order[n]]) = share);
+    }
   }
-  return all;
+  by_patch.finalize();
+  return by_patch.transpose();
 }
 
 }  // namespace
@@ -166,34 +207,37 @@ std::vector<Eigen::MatrixXf> sunlight_at(const SunWays& ways, std::span<const Su
 }
 
 std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
-                                        const SkyDivisions& divisions, std::span<const Vector> suns, std::uint64_t seed,
-                                        const Observer& observer) {
+                                        const SkyDivisions& divisions, std::span<const Vector> suns,
+                                        const SunSampling& sampling, const Observer& observer) {
   const Lighting& lighting = ways.lighting;
   const Shades shades(ways.scene, ways.tracing.coverings(), lighting.paths.optics());
   const SkyDivisions coarse = divisions.cut(1);
   const SunsInDivisions in = suns_in(coarse, suns);
   const std::vector<std::size_t> coarse_division = coarse_of(coarse, divisions);
-  std::vector<std::vector<OfSun>> of_patches(mesh.size());
+  std::vector<SunsOfPatch> of_patches(mesh.size());
   parallel_for(mesh.size(), Stage::direct_light, observer, [&](std::size_t k) {
     const auto patch = static_cast<PatchIndex>(k);
-    const Receiver receiver = receiver_of(mesh, patch);
-    std::vector<std::uint8_t> takes_part(coarse.size(), 0);
+    std::vector<std::uint8_t> is_near(coarse.size(), 0);
     for (SparseCoefficients::InnerIterator seen(sky, static_cast<Eigen::Index>(k)); seen; ++seen)
-      for (const std::size_t d : in.around[coarse_division[static_cast<std::size_t>(seen.col())]]) takes_part[d] = 1;
-    for (std::size_t d = 1; d < coarse.size(); ++d) {
-      if (takes_part[d] == 0) continue;
-      for (const std::uint32_t sun : in.suns[d]) {
-        const double cosine = mesh.normal[patch].dot(suns[sun]);
-        if (!(cosine > 0)) continue;
-        const auto exact = shades.transmittance(receiver, LightPlace{suns[sun], 0});
-        const Spectrum share =
-            exact ? *exact : share_by_rays(lighting, receiver, suns[sun], hash({seed, k, sun, stream::places_in_sun}));
-        if ((share > 0).any()) of_patches[k].push_back({sun, cosine * share});
-      }
-    }
+      for (const std::size_t d : in.around[coarse_division[static_cast<std::size_t>(seen.col())]]) is_near[d] = 1;
+    std::vector<std::uint32_t> which;
+    for (std::size_t d = 1; d < coarse.size(); ++d)
+      for (const std::uint32_t sun : in.suns[d])
+        if (is_near[d] != 0 && mesh.normal[patch].dot(suns[sun]) > 0) which.push_back(sun);
+    const Receiver receiver = receiver_of(mesh, patch);
+    const std::uint64_t key = hash({sampling.seed, k, stream::places_in_sun});
+    const bool is_exact =
+        sampling.is_important[k] != 0 || lighting.paths.is_covered_in_part(mesh.polygon[k], mesh.side[k]);
+    if (is_exact)
+      add_exactly(lighting, shades, receiver, which, suns, key, of_patches[k]);
+    else
+      add_by_single_rays(lighting, receiver, which, suns, key, of_patches[k]);
   });
   if (lighting.mirrors) add_over_mirrors(ways, mesh, divisions, suns, observer, of_patches);
-  return matrices_of(of_patches, suns.size(), lighting.bands);
+  std::vector<SparseSunlight> all;
+  const auto bands = static_cast<std::size_t>(lighting.bands);
+  for (std::size_t band = 0; band < bands; ++band) all.push_back(matrix_of(of_patches, suns.size(), band, bands));
+  return all;
 }
 
 }  // namespace patchlight

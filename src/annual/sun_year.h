@@ -28,12 +28,17 @@ struct SunWays {
 std::vector<Eigen::MatrixXf> sunlight_at(const SunWays& ways, std::span<const SurfacePoint> points,
                                          std::span<const Vector> suns, const Observer& observer);
 
-/// The same as means over patches, by the outlines of all shadows. `sky` has the patches' coefficients of `divisions`:
-/// only suns near a division from which
-/// a patch gets light are examined. Over mirrors the suns of a division
-/// stand together in their mean direction. \throws Canceled.
+/// How sunlight on patches is found.
+struct SunSampling {
+  std::span<const std::uint8_t> is_important;  ///< per patch: 1 where the outlines of shadows are worth their time
+  std::uint64_t seed = 1;
+};
+
+/// The same as means over patches, by the outlines of all shadows. Patches that are not important take one ray to each
+/// sun. `sky` has the patches' coefficients of `divisions`: only suns near a division from which a patch gets light are
+/// examined. Over mirrors the suns of a division stand together in their mean direction. \throws Canceled.
 std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
-                                        const SkyDivisions& divisions, std::span<const Vector> suns, std::uint64_t seed,
-                                        const Observer& observer);
+                                        const SkyDivisions& divisions, std::span<const Vector> suns,
+                                        const SunSampling& sampling, const Observer& observer);
 
 }  // namespace patchlight
