@@ -43,13 +43,17 @@ std::vector<std::vector<std::uint32_t>> suns_of_each(const SkyDivisions& divisio
   return found;
 }
 
-// Places of a coarse division are about two degrees apart, so that those of neighbors are nearer than five.
+// Places of a division of Tregenza are about two degrees apart, so that those of neighbors are nearer than five; those
+// of smaller ones in proportion.
 SunsInDivisions suns_in(const SkyDivisions& coarse, std::span<const Vector> suns) {
   SunsInDivisions found{suns_of_each(coarse, suns), std::vector<std::vector<std::size_t>>(coarse.size())};
-  const double near = std::cos(5 * std::numbers::pi / 180);
+  const double degrees = 5.0 / coarse.factor();
+  const double near = std::cos(degrees * std::numbers::pi / 180);
+  const double far = std::cos((24.0 / coarse.factor() + degrees) * std::numbers::pi / 180);
   std::vector<std::vector<Vector>> places(coarse.size());
   for (std::size_t d = 1; d < coarse.size(); ++d) places[d] = coarse.directions(d, 6);
   const auto touch = [&](std::size_t a, std::size_t b) {
+    if (places[a].front().dot(places[b].front()) < far) return false;
     return std::ranges::any_of(places[a], [&](const Vector& one) {
       return std::ranges::any_of(places[b], [&](const Vector& other) { return one.dot(other) > near; });
     });
@@ -211,7 +215,7 @@ std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& me
                                         const SunSampling& sampling, const Observer& observer) {
   const Lighting& lighting = ways.lighting;
   const Shades shades(ways.scene, ways.tracing.coverings(), lighting.paths.optics());
-  const SkyDivisions coarse = divisions.cut(1);
+  const SkyDivisions coarse = divisions.cut(std::min(2, divisions.factor()));
   const SunsInDivisions in = suns_in(coarse, suns);
   const std::vector<std::size_t> coarse_division = coarse_of(coarse, divisions);
   std::vector<SunsOfPatch> of_patches(mesh.size());

@@ -18,6 +18,8 @@ class SkyDivisions {
   /// `up` and `north` are unit vectors at right angles.
   SkyDivisions(int factor, const Vector& up, const Vector& north);
 
+  int factor() const { return factor_; }
+
   /// The same sky cut by another factor.
   SkyDivisions cut(int factor) const { return SkyDivisions(factor, up_, north_); }
 
