@@ -99,7 +99,7 @@ void add_exactly(const Lighting& lighting, const Shades& shades, const Receiver&
   }
 }
 
-// The same by one ray from a random place to each sun: right in the mean over the suns.
+// The same by one ray from a random place to each sun, whose mean over the suns is unbiased.
 void add_by_single_rays(const Lighting& lighting, const Receiver& receiver, std::span<const std::uint32_t> which,
                         std::span<const Vector> suns, std::uint64_t key, SunsOfPatch& found) {
   std::vector<Segment> segments;

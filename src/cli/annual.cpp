@@ -182,9 +182,7 @@ ExitCode annual(const AnnualArguments& arguments) {
   require_not_read_from({"-o", arguments.output}, scene->inputs);
   const Year year = daylight_of(weather, *scene, ground_reflectance(arguments, *scene));
 
-  // 2. Compute the year
-  line.expect({Stage::read, Stage::plan, Stage::mesh, Stage::form_factors, Stage::closure, Stage::direct_light,
-               Stage::solve, Stage::gather, Stage::write});
+  // 2. Compute the year; as stages come several times, progress is that of each
   const AnnualLight light = simulate_year(scene, year, arguments.request, arguments.options, observer);
   const CountedHours counted = counted_hours(year, *scene, arguments.first_hour, arguments.last_hour);
   const AnnualMetrics metrics = metrics_of(light, scene->sensors, counted);

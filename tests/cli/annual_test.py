@@ -3,6 +3,7 @@ import ast
 import csv
 import json
 import math
+import pathlib
 import struct
 import unittest
 
@@ -103,6 +104,16 @@ class AnnualTest(ToolTest):
             hours = list(csv.DictReader(file))
         self.assertEqual(len(hours), 8760)
         self.assertGreater(float(hours[171 * 24 + 12]["sun_altitude_deg"]), 60)
+
+        # The reference page has all files and columns.
+        page = (pathlib.Path(__file__).parents[2] / "docs/reference/outputs/annual-folder.md").read_text(encoding="utf-8")
+        for file in (self.folder / "year").iterdir():
+            self.assertIn(f"`{file.name}`", page)
+        for table in ("sensors.csv", "rooms.csv"):
+            columns = (self.folder / "year" / table).read_text().splitlines()[0].split(",")
+            for column in columns:
+                if f"SE_{column}" in columns:
+                    self.assertIn(f"`{column}`", page)
 
         # A year replaces an earlier one, and no other folder.
         self.assertEqual(self.annual("--weather", "city.epw", "--sky-division", 1, "-q").returncode, 0)
