@@ -1,19 +1,11 @@
 #include "annual/adjoint_light.h"
 
-#include "solve/pockets.h"
 #include "solve/scattering.h"
 
 #include <limits>
 
 namespace patchlight {
 namespace {
-
-// F itself where it is reciprocal; else it is by rows of rays.
-std::shared_ptr<const TransportOperator> adjoint_of(const SolvedTransport& solved) {
-  if (solved.light == nullptr || solved.light->is_reciprocal()) return solved.light;
-  const auto& with_pockets = dynamic_cast<const RaysWithPockets&>(*solved.light);
-  return std::make_shared<RayTransport>(adjoint_of(with_pockets.rays(), solved.area));
-}
 
 // An observer of solutions that are not those of the run.
 Observer without_iterates(const Observer& observer) {
@@ -25,7 +17,9 @@ Observer without_iterates(const Observer& observer) {
 
 }  // namespace
 
-AdjointLight::AdjointLight(const SolvedTransport& solved) : solved_(solved), adjoint_(adjoint_of(solved)) {}
+AdjointLight::AdjointLight(const SolvedTransport& solved) : solved_(solved), adjoint_(solved.light) {
+  if (adjoint_ != nullptr && !adjoint_->is_reciprocal()) adjoint_ = adjoint_->adjoint(solved.area);
+}
 
 Field AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
                             const Observer& observer) const {

@@ -41,26 +41,14 @@ std::optional<Spectrum> color_of(const std::vector<Spectrum>& lights, const Band
   return color;
 }
 
-// Bands in which all materials have the same values, in the order of their first. Pictures have all colors.
-std::vector<std::vector<Eigen::Index>> alike_bands(const Scene& scene, Eigen::Index bands) {
+// Bands in which no material differs. Pictures have all colors.
+std::vector<std::vector<Eigen::Index>> bands_alike_in(const Scene& scene, Eigen::Index bands) {
   std::vector<Spectrum> shares;
   visit_shares(scene, [&](const Spectrum& values, const SampledSpectrum*) { shares.push_back(values); });
   const bool has_textures = std::any_of(scene.materials.begin(), scene.materials.end(),
                                         [](const Material& m) { return m.texture.has_value(); });
-  std::vector<std::vector<Eigen::Index>> groups;
-  for (Eigen::Index band = 0; band < bands; ++band) {
-    const auto is_alike = [&](const std::vector<Eigen::Index>& group) {
-      return !has_textures && std::all_of(shares.begin(), shares.end(), [&](const Spectrum& s) {
-        return s.size() <= band || s[band] == s[group.front()];
-      });
-    };
-    const auto found = std::find_if(groups.begin(), groups.end(), is_alike);
-    if (found == groups.end())
-      groups.push_back({band});
-    else
-      found->push_back(band);
-  }
-  return groups;
+  if (has_textures) shares.push_back(Spectrum::LinSpaced(bands, 0, 1));
+  return alike_bands(shares, bands);
 }
 
 double weight_in(const std::vector<Eigen::Index>& group, const Spectrum& color, const Bands& bands) {
@@ -85,7 +73,7 @@ YearScene scene_of_year(const Scene& read, const Year& year) {
   if (!of_sun && !of_sky) throw InputError("year", "found no daylight; expected sun or sky in some hour");
 
   // 2. The bands that differ, with the weights of daylight.
-  const auto groups = alike_bands(read, static_cast<Eigen::Index>(bands.size()));
+  const auto groups = bands_alike_in(read, static_cast<Eigen::Index>(bands.size()));
   std::vector<Eigen::Index> first;
   for (const auto& group : groups) first.push_back(group.front());
   YearScene result{in_bands(without_lamps(read), first), {}};

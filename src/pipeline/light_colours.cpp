@@ -8,6 +8,7 @@
 #include "pipeline/solved.h"
 #include "pipeline/with_error_bars.h"
 #include "plan/planned_scene.h"
+#include "scene/spectral_bands.h"
 
 #include <algorithm>
 #include <set>
@@ -167,24 +168,6 @@ std::vector<Spectrum> specular_spectra(const Scene& scene, Reflections reflectio
   for (const MaterialIndex m : clear) spectra.push_back(scene.materials[m].transmittance);
   for (const MaterialIndex m : mirrors) spectra.push_back(scene.materials[m].specular_reflectance);
   return spectra;
-}
-
-// Bands in which all spectra have the same values, in the order of their first.
-std::vector<std::vector<Eigen::Index>> alike_bands(const std::vector<Spectrum>& spectra, Eigen::Index bands) {
-  std::vector<std::vector<Eigen::Index>> groups;
-  for (Eigen::Index band = 0; band < bands; ++band) {
-    const auto is_alike = [&](const std::vector<Eigen::Index>& group) {
-      return std::all_of(spectra.begin(), spectra.end(),
-                         [&](const Spectrum& s) { return s.size() == 0 || s[band] == s[group.front()]; });
-    };
-    const auto found = std::find_if(groups.begin(), groups.end(), is_alike);
-    if (found == groups.end()) {
-      groups.push_back({band});
-    } else {
-      found->push_back(band);
-    }
-  }
-  return groups;
 }
 
 // A plan for some of its bands.

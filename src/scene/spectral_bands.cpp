@@ -425,6 +425,23 @@ Scene in_rgb(Scene scene) {
   return without_spectra(std::move(scene));
 }
 
+std::vector<std::vector<Eigen::Index>> alike_bands(const std::vector<Spectrum>& spectra, Eigen::Index bands) {
+  std::vector<std::vector<Eigen::Index>> groups;
+  for (Eigen::Index band = 0; band < bands; ++band) {
+    const auto is_alike = [&](const std::vector<Eigen::Index>& group) {
+      return std::all_of(spectra.begin(), spectra.end(),
+                         [&](const Spectrum& s) { return s.size() == 0 || s[band] == s[group.front()]; });
+    };
+    const auto found = std::find_if(groups.begin(), groups.end(), is_alike);
+    if (found == groups.end()) {
+      groups.push_back({band});
+    } else {
+      found->push_back(band);
+    }
+  }
+  return groups;
+}
+
 Scene with_alike_bands_joined(Scene scene) {
   const AllSpectra all = all_spectra(scene);
   const Bands bands = bands_of(scene);

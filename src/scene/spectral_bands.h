@@ -122,4 +122,7 @@ BandsWithError bands_within(const Scene& scene, double color_error);
 /// lights have the same share of their light in each, or none has any: nothing that is linear in light changes.
 Scene with_alike_bands_joined(Scene scene);
 
+/// Bands in which all spectra have the same values, in the order of their first. Empty spectra do not count.
+std::vector<std::vector<Eigen::Index>> alike_bands(const std::vector<Spectrum>& spectra, Eigen::Index bands);
+
 }  // namespace patchlight

@@ -77,6 +77,9 @@ class RaysWithPockets : public TransportOperator {
   PatchIndex size() const override { return rays_.size(); }
   Field apply(const FieldView& radiosity) const override { return rays_.apply(radiosity); }
   bool is_reciprocal() const override { return false; }
+  std::unique_ptr<TransportOperator> adjoint(const Eigen::VectorXd& area) const override {
+    return std::make_unique<RayTransport>(adjoint_of(rays_, area));
+  }
   /// Null as well if a patch reflects more than in the search: light may be reflected more often than the pockets
   /// state.
   const Pockets* pockets(const Eigen::ArrayXd& reflectance) const override {

@@ -35,6 +35,7 @@ std::vector<PatchRange> emitter_ranges(const FieldView& exitance) {
 }  // namespace
 
 const Pockets* TransportOperator::pockets(const Eigen::ArrayXd&) const { return nullptr; }
+std::unique_ptr<TransportOperator> TransportOperator::adjoint(const Eigen::VectorXd&) const { return nullptr; }
 
 Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage,
                              const Observer& observer) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 
 namespace patchlight {
 
@@ -21,6 +22,9 @@ class TransportOperator {
   virtual Field apply(const FieldView& radiosity) const = 0;
   /// True when A_i F_ij = A_j F_ji up to rounding. Solvers that require symmetry reject other transports.
   virtual bool is_reciprocal() const { return true; }
+  /// The adjoint of F in the inner product sum_i A_i x_i y_i; `area` in m^2. Null if there is none; F is its own where
+  /// it is reciprocal.
+  virtual std::unique_ptr<TransportOperator> adjoint(const Eigen::VectorXd& area) const;
   /// Access to single rows; null if the transport has none.
   virtual const RowTransport* rows() const { return nullptr; }
   /// Blocks of patches that keep light among themselves, given the highest reflectance of each patch in any band. Null
