@@ -5,25 +5,13 @@
 #include <limits>
 
 namespace patchlight {
-namespace {
-
-// An observer of solutions that are not those of the run.
-Observer without_iterates(const Observer& observer) {
-  if (!observer) return {};
-  return [&observer](const Progress& progress) {
-    return observer({.stage = progress.stage, .fraction = progress.fraction});
-  };
-}
-
-}  // namespace
-
 AdjointLight::AdjointLight(const SolvedTransport& solved) : solved_(solved), adjoint_(solved.light) {
   if (adjoint_ != nullptr && !adjoint_->is_reciprocal()) adjoint_ = adjoint_->adjoint(solved.area);
 }
 
-Field AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
-                            const Observer& observer) const {
-  if (adjoint_ == nullptr) return Field::Zero(seen.rows(), seen.cols());
+AdjointWeights AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& bands,
+                                     double tolerance) const {
+  if (adjoint_ == nullptr) return {Field::Zero(seen.rows(), seen.cols())};
   const Eigen::ArrayXd area = solved_.area.array();
   const Scattering scattering = of_bands(solved_.scattering, bands);
   const Eigen::ArrayXd per_area = (area > 0).select(area.inverse(), 0.0);
@@ -34,7 +22,8 @@ Field AdjointLight::weights(const Field& seen, const std::vector<Eigen::Index>& 
                               .restart = 12,
                               .largest_row_sum = std::numeric_limits<double>::infinity(),
                               .patch_bounds = false};
-  return solve(*adjoint_, problem, options, without_iterates(observer)).radiosity.colwise() * area;
+  const Solution found = solve(*adjoint_, problem, options);
+  return {found.radiosity.colwise() * area, found.converged};
 }
 
 }  // namespace patchlight

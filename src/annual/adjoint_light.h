@@ -9,6 +9,12 @@
 
 namespace patchlight {
 
+/// W per patch (row) and column of the patches seen.
+struct AdjointWeights {
+  Field values;
+  bool converged = true;
+};
+
 /// The reflections of a solved scene seen from the receivers. Let sensors read sum_j g_j B_j from B = R (F B + H). This
 /// is sum_j W_j H_j with W = A R z, z = g / A + F* R z: w = R z is the radiosity of a scene with the transport F* whose
 /// patches emit R g / A. A is the area; F* is the adjoint of F and R is its own in the inner product sum_j A_j x_j y_j.
@@ -18,9 +24,8 @@ class AdjointLight {
   explicit AdjointLight(const SolvedTransport& solved);
 
   /// 0 without a transport, as then sensors see no reflected light. W of each column of `seen`, g; `bands` has its
-  /// band, counted within SolvedTransport::bands. \throws Canceled.
-  Field weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance,
-                const Observer& observer = {}) const;
+  /// band, counted within SolvedTransport::bands.
+  AdjointWeights weights(const Field& seen, const std::vector<Eigen::Index>& bands, double tolerance) const;
 
  private:
   const SolvedTransport& solved_;

@@ -1,5 +1,7 @@
 #include "patchlight/annual/metrics.h"
 
+#include "patchlight/base/error.h"
+
 #include "base/parallel.h"
 #include "light/photometry.h"
 
@@ -35,7 +37,7 @@ struct Series {
   }
 };
 
-// The value that is reached by `share` of the values; they are reordered.
+// The value that is reached by `share` of the values.
 double reached_by(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto count = static_cast<double>(values.size());
@@ -101,12 +103,23 @@ OfRoom measures_of(std::span<const OfSensor* const> sensors) {
   return found;
 }
 
-// The three series of a measure: as computed, brighter and darker.
+// The three series of a measure: as computed, brighter and darker. The error is not a number if it is not known.
 template <std::size_t count>
-std::array<Measure, count> with_errors(const std::array<std::array<double, count>, 3>& series) {
+std::array<Measure, count> with_errors(const std::array<std::array<double, count>, 3>& series, bool is_known) {
   std::array<Measure, count> found;
-  for (std::size_t m = 0; m < count; ++m) found[m] = {series[0][m], std::abs(series[1][m] - series[2][m]) / 2};
+  for (std::size_t m = 0; m < count; ++m) {
+    const double error = std::abs(series[1][m] - series[2][m]) / 2;
+    found[m] = {series[0][m], is_known ? error : std::numeric_limits<double>::quiet_NaN()};
+  }
   return found;
+}
+
+bool is_inside_wall(const AnnualLight& light, std::size_t sensor) {
+  return light.illuminance.rows() > 0 && std::isnan(light.illuminance(0, static_cast<Eigen::Index>(sensor)));
+}
+
+bool has_known_error(const AnnualLight& light, std::size_t sensor) {
+  return !std::isnan(light.relative_error[static_cast<Eigen::Index>(sensor)]);
 }
 
 using AllSensors = std::array<std::vector<OfSensor>, 3>;
@@ -118,17 +131,22 @@ RoomYear room_of(std::string name, std::size_t begin, std::size_t end, const Ann
   for (std::size_t k = 0; k < 3; ++k) {
     std::vector<const OfSensor*> read;
     for (std::size_t i = begin; i < end; ++i)
-      if (!std::isnan(light.relative_error[static_cast<Eigen::Index>(i)])) read.push_back(&series[k][i]);
+      if (!is_inside_wall(light, i)) read.push_back(&series[k][i]);
     room.inside_walls = room.sensors - read.size();
     of_room[k] = measures_of(read);
   }
-  room.measures = with_errors(of_room);
+  bool is_known = true;
+  for (std::size_t i = begin; i < end; ++i)
+    is_known = is_known && (is_inside_wall(light, i) || has_known_error(light, i));
+  room.measures = with_errors(of_room, is_known);
   return room;
 }
 
 }  // namespace
 
 CountedHours counted_hours(const Year& year, const Scene& scene, int first, int last) {
+  if (first < 0 || last > 24 || first >= last)
+    throw InputError("hours", std::to_string(first) + " to " + std::to_string(last) + ": expected two hours of a day");
   const std::size_t hours = year.hours.size();
   CountedHours counted{std::vector<std::uint8_t>(hours, 0), std::vector<std::uint8_t>(hours, 0)};
   const Bands bands = bands_of(scene);
@@ -182,17 +200,19 @@ AnnualMetrics metrics_of(const AnnualLight& light, std::span<const SensorGroup> 
   parallel_for(sensors, [&](std::size_t i) {
     const auto sensor = static_cast<Eigen::Index>(i);
     const double error = light.relative_error[sensor];
-    const std::array<double, 3> factors = {1, 1 + error, std::max(0.0, 1 - error)};
+    const double spread = has_known_error(light, i) ? error : 0;
+    const std::array<double, 3> factors = {1, 1 + spread, std::max(0.0, 1 - spread)};
     for (std::size_t k = 0; k < 3; ++k) {
-      if (std::isnan(error))
-        series[k][i].fill(error);
+      if (is_inside_wall(light, i))
+        series[k][i].fill(std::numeric_limits<double>::quiet_NaN());
       else
         series[k][i] = measures_of(Series{light, sensor, factors[k]}, hours);
     }
   });
   AnnualMetrics found;
   for (std::size_t i = 0; i < sensors; ++i)
-    found.sensors.push_back(with_errors<sensor_measures>({series[0][i], series[1][i], series[2][i]}));
+    found.sensors.push_back(
+        with_errors<sensor_measures>({series[0][i], series[1][i], series[2][i]}, has_known_error(light, i)));
   std::size_t first = 0;
   for (const SensorGroup& group : groups) {
     found.rooms.push_back(room_of(group.name, first, first + group.sensors.size(), light, series));

@@ -40,6 +40,7 @@ struct LightOnPatches {
 // from each sun (column), as a share of its normal illuminance.
 struct LightAtSensors {
   Eigen::MatrixXf by_sky, by_sun_straight, by_sun_reflected;
+  bool converged = true;  // all adjoint solutions
 };
 
 // All that the steps share.
@@ -77,8 +78,8 @@ FreeSensors free_sensors(const Simulation& simulation) {
   return found;
 }
 
-// The share of each patch's geometric area that holds light from all directions alike: g of radiosities of the
-// geometric area is this share times g of those of the solved transport.
+// The share of each patch's geometric area that holds light from all directions alike: g of radiosities of the solved
+// transport is this share times g of those of the geometric area.
 Eigen::ArrayXd solved_share(const Simulation& simulation, const SolvedTransport& solved) {
   const Eigen::ArrayXd geometric = simulation.problem.area.array();
   return (geometric > 0).select(solved.area.array() / geometric, 0.0);
@@ -139,7 +140,8 @@ void add_reflected(const RunOfYear& run, const SolvedTransport& solved, const Ad
   const auto [columns, bands] = columns_of(solved, block.size(), number_of_bands(run.year.scene));
   Field of_color = seen(Eigen::all, columns);
   of_color.colwise() *= solved_share(run.simulation, solved);
-  Field weights = adjoint.weights(of_color, bands, run.options.tolerance);
+  auto [weights, converged] = adjoint.weights(of_color, bands, run.options.tolerance);
+  at.converged = at.converged && converged;
   weights.colwise() *= exposed;
   for (Eigen::Index b = 0; b < own; ++b) {
     const auto band = static_cast<std::size_t>(solved.bands[static_cast<std::size_t>(b)]);
@@ -219,7 +221,7 @@ std::vector<std::uint8_t> important_patches(const RunOfYear& run, const LookOfSe
     std::iota(own.begin(), own.end(), Eigen::Index{0});
     Field of_color = seen(Eigen::all, solved.bands);
     of_color.colwise() *= solved_share(simulation, solved);
-    const Field weights = AdjointLight(solved).weights(of_color, own, 0.01);
+    const Field weights = AdjointLight(solved).weights(of_color, own, 0.01).values;
     for (const Eigen::Index b : own)
       importance +=
           static_cast<double>(run.sun_weight(static_cast<std::size_t>(solved.bands[static_cast<std::size_t>(b)]))) *
@@ -269,6 +271,14 @@ LightAtSensors straight_light(const RunOfYear& run, const std::vector<Sensor>& s
   return at;
 }
 
+void check(const AnnualOptions& options) {
+  const int f = options.sky_division;
+  if (f != 1 && f != 2 && f != 4) throw InputError("options.sky_division", std::to_string(f) + ": expected 1, 2 or 4");
+  if (options.rays < static_cast<int>(most_replicates) || options.sky_samples < 1)
+    throw InputError("options.rays",
+                     "expected at least " + std::to_string(most_replicates) + " rays and one sample of the sky");
+}
+
 void require_memory_for(const Scene& scene, const Request& request, const Year& year, const AnnualOptions& options) {
   const auto sensors = static_cast<double>(all_sensors(scene.sensors).size());
   const auto hours = static_cast<double>(year.hours.size());
@@ -315,7 +325,9 @@ void put_daylight_factors(const RunOfYear& run, double ground_reflectance, const
     const SensorValue solved = sensor_value(reference, static_cast<std::size_t>(sensor));
     result.daylight_factor[sensor] = 100 * static_cast<double>(illuminance[i]) / reference_illuminance;
     result.solved_daylight_factor[sensor] = 100 * solved.value / reference_illuminance;
-    result.relative_error[sensor] = solved.value > 0 ? solved.standard_error / solved.value : 0;
+    // Coefficients are estimated by rays of their own.
+    const double difference = static_cast<double>(illuminance[i]) - solved.value;
+    result.relative_error[sensor] = solved.value > 0 ? std::hypot(solved.standard_error, difference) / solved.value : 0;
   }
 }
 
@@ -350,6 +362,7 @@ class PhaseClock {
 AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, const Request& request,
                           const AnnualOptions& options, const Observer& observer) {
   const ThreadLimit threads(request.resources.threads);
+  check(options);
   require_memory_for(*read, request, year, options);
   AnnualLight result = nothing_known(year, all_sensors(read->sensors).size());
   PhaseClock clock(result);
@@ -390,6 +403,9 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   put_hours(run.suns, skies, at, free, result);
   put_daylight_factors(run, year.ground_reflectance, at, free, reference.readings, result);
   clock.finish("hours");
+  result.converged = at.converged && simulation.solution.converged;
+  const std::optional<double>& asked = simulation.plan.accuracy.relative_error;
+  result.is_accurate = !asked || (!simulation.accuracy.empty() && simulation.accuracy.back().total <= *asked);
   result.patches = simulation.mesh.size();
   result.sun_hours = run.suns.hours.size();
   result.sky_hours = skies.hours.size();

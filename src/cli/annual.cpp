@@ -80,6 +80,7 @@ double ground_reflectance(const AnnualArguments& arguments, const Scene& scene) 
 Scene scene_with_sensors(const AnnualArguments& arguments, const Observer& observer) {
   ReadOptions read = arguments.read;
   read.daylight.ground_reflectance.reset();
+  read.needs_up = true;
   Scene scene = read_models(arguments.models, read, observer);
   if (!arguments.points.empty()) scene.sensors.push_back(read_points(arguments.points, scene.metres_per_unit));
   if (all_sensors(scene.sensors).empty())
@@ -146,6 +147,17 @@ std::string costs(const AnnualLight& light) {
   return text.str();
 }
 
+// Warns of results that may be wrong.
+ExitCode exit_code_of(const AnnualLight& light) {
+  if (light.converged && light.is_accurate) return good;
+  if (!light.converged)
+    print_message("warning", "the solver has not converged: light that is reflected often is missing");
+  else
+    print_message("warning",
+                  "the requested accuracy was not reached under the overcast sky\nhint: more time or memory");
+  return not_converged;
+}
+
 }  // namespace
 
 Finish add_annual(CLI::App& tool) {
@@ -196,10 +208,11 @@ ExitCode annual(const AnnualArguments& arguments) {
   }
   line.hide();
   for (const Diagnostic& warning : light.warnings) print_diagnostic("warning", warning);
+  const ExitCode code = exit_code_of(light);
   print_notes(merged({weather.notes, light.notes}), arguments.quiet);
-  if (arguments.quiet) return good;
-  std::cout << summary(metrics) << costs(light) << "wrote " << shown_name(arguments.output.string()) << std::endl;
-  return good;
+  if (!arguments.quiet)
+    std::cout << summary(metrics) << costs(light) << "wrote " << shown_name(arguments.output.string()) << std::endl;
+  return code;
 }
 
 }  // namespace patchlight::cli

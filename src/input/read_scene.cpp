@@ -215,7 +215,7 @@ std::string upright_part(const DaylightSetting& daylight) {
 }
 
 std::string upright_part(const ReadOptions& options, const std::vector<SceneFile>& files) {
-  std::string part = upright_part(options.daylight);
+  std::string part = options.needs_up ? "the weather" : upright_part(options.daylight);
   for (const SceneFile& file : files) {
     if (part.empty()) part = upright_part(file.lights);
     const bool has_grid = std::any_of(file.sensors.begin(), file.sensors.end(),
@@ -286,9 +286,9 @@ Scene with_scene_file(Scene scene, const SceneFile& file) {
   return with_settings(std::move(scene), file.settings);
 }
 
-// Replaces the sun, the sky or both of the files by those of the options.
+// Replaces the sun, the sky or both of the files by those of the options, and finds north.
 Scene with_daylight(Scene scene, const ReadOptions& options, bool has_north) {
-  if (!asks_for_daylight(options.daylight)) return scene;
+  if (!asks_for_daylight(options.daylight)) return has_north ? scene : with_lights(std::move(scene), {});
   if (options.daylight.weather || options.daylight.sun) scene.sun.reset();
   if (options.daylight.weather || options.daylight.sky) scene.sky.reset();
   LightEntries lights = lights_of(options.daylight, options.confine);

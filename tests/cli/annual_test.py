@@ -120,6 +120,28 @@ class AnnualTest(ToolTest):
         (self.folder / "year" / "mine.txt").write_text("mine")
         self.assertEqual(self.annual("--weather", "city.epw").returncode, 6)
 
+    def test_the_sun_follows_the_vertical_axis(self):
+        # Axis y up instead of z, north -z instead of y: the same room, with the same sunlight.
+        def turned(text, places):
+            rows = []
+            for line in text.splitlines():
+                words = line.split()
+                for at in places(words):
+                    words[at + 1], words[at + 2] = words[at + 2], f"{-float(words[at + 1]):g}"
+                rows.append(" ".join(words))
+            return "\n".join(rows) + "\n"
+        self.write("turned.obj", turned(ROOM, lambda words: [1] if words[0] == "v" else []))
+        self.write("turned.pts", turned(SENSORS, lambda words: [0, 3]))
+        light = []
+        for model, axis, points in (("open.obj", "z", "desk.pts"), ("turned.obj", "y", "turned.pts")):
+            done = self.run_tool("annual", model, "--up", axis, "--points", points, "--patches", 100, "--weather", "city.epw",
+                                 "--sky-division", 1, "-q", "-o", f"year_{axis}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            light.append(read_npy(self.folder / f"year_{axis}" / "sunlight.npy")[1])
+        self.assertGreater(max(light[0]), 1000)
+        for one, other in zip(*light):
+            self.assertLessEqual(abs(one - other), 1e-3 * one)
+
     def test_refusals(self):
         def remove_an_hour(lines):
             del lines[1000]

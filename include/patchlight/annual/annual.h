@@ -34,11 +34,14 @@ struct PhaseCost {
 /// A year of light at the sensors of a scene.
 struct AnnualLight {
   HourlyValues illuminance;                ///< by sun, sky and ground, with all reflections; not a number inside walls
-  HourlyValues sunlight;                   ///< the part that comes straight from the sun, through panes
+  HourlyValues sunlight;                   ///< the part that comes from the sun without scattering:
+                                           ///< straight, through panes and over mirrors
   Eigen::VectorXd daylight_factor;         ///< under a CIE overcast sky, by the coefficients, percent
   Eigen::VectorXd solved_daylight_factor;  ///< the same by the solution for this sky alone
   Eigen::VectorXd relative_error;  ///< standard error of the light of sky, ground and reflections, as that under the
                                    ///< overcast sky: rays, sampling, mesh and solver; common to all hours
+  bool converged = true;           ///< the run under the overcast sky and all adjoint solutions
+  bool is_accurate = true;         ///< the run's error is not above AccuracyOptions::relative_error
   std::size_t patches = 0;
   std::size_t sun_hours = 0;  ///< with direct sun
   std::size_t sky_hours = 0;  ///< with a sky

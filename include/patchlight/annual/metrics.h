@@ -18,7 +18,7 @@ struct CountedHours {
   std::vector<std::uint8_t> daylight;  ///< 1 for each of the 4380 hours with the most light of the sky: EN 17037
 };
 
-/// Occupied is every day from `first` to before `last`, hours of the day.
+/// Occupied is every day from `first` to before `last`, hours of the day. \throws InputError if there are none.
 CountedHours counted_hours(const Year& year, const Scene& scene, int first, int last);
 
 /// A measure and how far it may be off.
@@ -36,7 +36,7 @@ enum class SensorMeasure : std::size_t {
   udi_100_to_300,    ///< supplementary
   udi_300_to_3000,   ///< autonomous
   udi_above_3000,    ///< exceeded
-  sunlit_hours,      ///< hours with more than 1000 lx straight from the sun (IES LM-83-12), not percent
+  sunlit_hours,      ///< hours with more than 1000 lx of AnnualLight::sunlight (IES LM-83-12), not percent
   daylight_factor,   ///< percent, under a CIE overcast sky
   half_of_daylight   ///< lx that are reached in half of the daylight hours (EN 17037:2018)
 };

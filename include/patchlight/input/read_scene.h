@@ -84,6 +84,7 @@ struct ReadOptions {
   double detail = 0;        ///< meters; smaller parts are removed or replaced by boxes, see with_less_detail()
   bool keep_faces = false;  ///< keep coplanar neighbors of one object and material apart, see with_joined_faces()
   DaylightSetting daylight = {};
+  bool needs_up = false;  ///< the caller adds daylight later, which depends on the vertical axis and north
   std::optional<double> maintenance_factor = {};  ///< fraction of the initial light of lamps and luminaires, above 0,
                                                   ///< up to 1; default: that of the scene file, else 1
   std::optional<BandsAsked> bands = {};           ///< default: those of the scene file, else BandsAsked{}

@@ -48,7 +48,7 @@ void expect_duality(const SolvedTransport& solved) {
   constexpr Eigen::Index sensors = 3;
   const Field seen = numbers(size, sensors, 1);
   const Field arriving = numbers(size, 1, 2);
-  const Field weights = AdjointLight(solved).weights(seen, {0, 0, 0}, 1e-10);
+  const Field weights = AdjointLight(solved).weights(seen, {0, 0, 0}, 1e-10).values;
   const RadiosityProblem problem{solved.scattering, Field::Zero(size, 1), solved.area, arriving};
   const Solution solution =
       solve(*solved.light, problem, {.solver = usual_solver(*solved.light, problem), .relative_error = 1e-10});

@@ -111,11 +111,21 @@ TEST(Metrics, ErrorsAreThoseOfBrighterAndDarkerLightWithoutTheSun) {
 
 TEST(Metrics, LeaveOutSensorsInsideWalls) {
   AnnualLight light = light_of({series, series});
-  light.relative_error[1] = std::numeric_limits<double>::quiet_NaN();
+  light.illuminance.col(1).setConstant(std::numeric_limits<float>::quiet_NaN());
   const AnnualMetrics found = metrics_of(light, group_of(2), ten_hours());
   EXPECT_EQ(found.rooms[0].inside_walls, 1U);
   EXPECT_NEAR(of(found.rooms[0], RoomMeasure::mean_illuminance), 1690, 1e-9);
   EXPECT_TRUE(std::isnan(of(found.sensors[1], SensorMeasure::autonomy)));
+}
+
+TEST(Metrics, KeepValuesWhoseErrorIsNotKnown) {
+  AnnualLight light = light_of({series});
+  light.relative_error[0] = std::numeric_limits<double>::quiet_NaN();
+  const AnnualMetrics found = metrics_of(light, group_of(1), ten_hours());
+  EXPECT_EQ(found.rooms[0].inside_walls, 0U);
+  EXPECT_NEAR(found.sensors[0][0].value, 1690, 1e-9);
+  EXPECT_TRUE(std::isnan(found.sensors[0][0].standard_error));
+  EXPECT_TRUE(std::isnan(found.rooms[0].measures[0].standard_error));
 }
 
 }  // namespace
