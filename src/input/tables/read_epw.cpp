@@ -50,8 +50,9 @@ Line split(const TextLine& line, const std::string& file) {
 double irradiance(const Line& line, std::size_t field, const std::string& what) {
   const double value = line.number(field, what);
   if (value >= 0 && value < 9999) return value;  // 9999 marks a missing value
-  throw InputError(line.where, "the " + what + " of this hour is " + line.fields[field] +
-                                   "; expected W/m^2 from 0 to 9998\nhint: choose an hour, or a file, where it is known");
+  throw InputError(line.where,
+                   "the " + what + " of this hour is " + line.fields[field] +
+                       "; expected W/m^2 from 0 to 9998\nhint: choose an hour, or a file, where it is known");
 }
 
 // Precipitable water in cm from the dew point in degrees Celsius. Perez et al. 1990, eq. 3.
