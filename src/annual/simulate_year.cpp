@@ -359,16 +359,16 @@ class PhaseClock {
 
 }  // namespace
 
-AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, const Request& request,
-                          const AnnualOptions& options, const Observer& observer) {
+AnnualLight simulate_year(const Scene& scene, const Year& year, const Request& request, const AnnualOptions& options,
+                          const Observer& observer) {
   const ThreadLimit threads(request.resources.threads);
   check(options);
-  require_memory_for(*read, request, year, options);
-  AnnualLight result = nothing_known(year, all_sensors(read->sensors).size());
+  require_memory_for(scene, request, year, options);
+  AnnualLight result = nothing_known(year, all_sensors(scene.sensors).size());
   PhaseClock clock(result);
 
   // 1. Solve the scene under a reference sky: mesh, form factors, materials, and the errors of all that.
-  const YearScene of_year = scene_of_year(*read, year);
+  const YearScene of_year = scene_of_year(scene, year);
   const Simulation simulation =
       simulate(std::make_shared<const Scene>(of_year.scene), request, observer, {.keeps_transport = true});
   clock.finish("mesh and form factors");
@@ -381,7 +381,7 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
                       options,
                       observer,
                       SkyDivisions(options.sky_division, of_year.scene.up, of_year.scene.north),
-                      suns_of(year, *read)};
+                      suns_of(year, scene)};
   const FreeSensors free = free_sensors(simulation);
   LightAtSensors at = straight_light(run, free.sensors);
   clock.finish("sky and sun at sensors");
@@ -399,7 +399,7 @@ AnnualLight simulate_year(std::shared_ptr<const Scene> read, const Year& year, c
   }
 
   // 4. Hour by hour.
-  const SkiesOfYear skies = skies_of(year, *read, run.divisions, observer);
+  const SkiesOfYear skies = skies_of(year, scene, run.divisions, observer);
   put_hours(run.suns, skies, at, free, result);
   put_daylight_factors(run, year.ground_reflectance, at, free, reference.readings, result);
   clock.finish("hours");

@@ -189,21 +189,21 @@ ExitCode annual(const AnnualArguments& arguments) {
   const Observer observer = observer_on(line);
 
   // 1. Read the scene and the weather
-  const auto scene = std::make_shared<const Scene>(scene_with_sensors(arguments, observer));
-  const WeatherYear weather = read_epw_year(weather_file(arguments, *scene));
-  require_not_read_from({"-o", arguments.output}, scene->inputs);
-  const Year year = daylight_of(weather, *scene, ground_reflectance(arguments, *scene));
+  const Scene scene = scene_with_sensors(arguments, observer);
+  const WeatherYear weather = read_epw_year(weather_file(arguments, scene));
+  require_not_read_from({"-o", arguments.output}, scene.inputs);
+  const Year year = daylight_of(weather, scene, ground_reflectance(arguments, scene));
 
   // 2. Compute the year; as stages come several times, progress is that of each
   const AnnualLight light = simulate_year(scene, year, arguments.request, arguments.options, observer);
-  const CountedHours counted = counted_hours(year, *scene, arguments.first_hour, arguments.last_hour);
-  const AnnualMetrics metrics = metrics_of(light, scene->sensors, counted);
+  const CountedHours counted = counted_hours(year, scene, arguments.first_hour, arguments.last_hour);
+  const AnnualMetrics metrics = metrics_of(light, scene.sensors, counted);
 
   // 3. Write it
-  const std::vector<HourRow> hours = hour_rows(weather, year, *scene, counted);
+  const std::vector<HourRow> hours = hour_rows(weather, year, scene, counted);
   {
     const WritingGuard guard;
-    write_annual(arguments.output, {light, metrics, scene->sensors, hours, weather.file, arguments.first_hour,
+    write_annual(arguments.output, {light, metrics, scene.sensors, hours, weather.file, arguments.first_hour,
                                     arguments.last_hour, arguments.options.sky_division, arguments.command_line});
   }
   line.hide();

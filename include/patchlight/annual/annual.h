@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -60,7 +59,7 @@ struct AnnualLight {
 /// (I - R F)^-1 R for the patches g that the sensor sees, as a radiosity of a scene that g lights. One run of
 /// simulate() under a CIE overcast sky gives mesh, form factors and errors. O(sensors x (rays + form factors + hours x
 /// sunlit patches)). \throws InputError, MemoryError, Canceled.
-AnnualLight simulate_year(std::shared_ptr<const Scene> scene, const Year& year, const Request& request = {},
+AnnualLight simulate_year(const Scene& scene, const Year& year, const Request& request = {},
                           const AnnualOptions& options = {}, const Observer& observer = {});
 
 }  // namespace patchlight

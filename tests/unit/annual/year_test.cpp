@@ -69,7 +69,7 @@ Request small_request(Storage storage) {
 }
 
 AnnualLight year_of(const Scene& scene, const Year& year, const Request& request) {
-  return simulate_year(std::make_shared<const Scene>(scene), year, request);
+  return simulate_year(scene, year, request);
 }
 
 // Each sensor reads in each hour what a run for that hour alone has, within a share of it and three standard errors.
@@ -128,8 +128,7 @@ TEST(Year, FreeHorizontalSensorReadsTheGlobalIlluminance) {
   scene.sensors = {{"free", {{Point(0.5, 0.5, 5), Vector::UnitZ()}}}};
   const Year year = twelve_hours(scene);
   for (const int factor : {1, 2, 4}) {
-    const AnnualLight light = simulate_year(std::make_shared<const Scene>(scene), year, small_request(Storage::tiles),
-                                            {.sky_division = factor});
+    const AnnualLight light = simulate_year(scene, year, small_request(Storage::tiles), {.sky_division = factor});
     for (std::size_t hour = 0; hour < year.hours.size(); ++hour) {
       const Daylight& of = year.hours[hour];
       double expected = luminance(of.sky->horizontal_irradiance);
