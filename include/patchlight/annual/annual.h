@@ -16,6 +16,7 @@ namespace patchlight {
 /// Values per hour of the year (row) and sensor (column), lx.
 using HourlyValues = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// How finely a year is sampled.
 struct AnnualOptions {
   int sky_division = 4;     ///< the factor of Reinhart's divisions of the sky: 1 to 145, 2 to 577, 4 to 2,305 parts
   int rays = 8192;          ///< per sensor over the hemisphere, for the patches that it sees

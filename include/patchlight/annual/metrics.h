@@ -64,6 +64,7 @@ inline constexpr std::size_t room_measures = 13;
 const char* name_of(SensorMeasure measure);
 const char* name_of(RoomMeasure measure);
 
+/// The measures of a room.
 struct RoomYear {
   std::string name;
   std::size_t sensors = 0;
@@ -71,6 +72,7 @@ struct RoomYear {
   std::array<Measure, room_measures> measures{};
 };
 
+/// The measures of sensors, rooms and the building.
 struct AnnualMetrics {
   std::vector<std::array<Measure, sensor_measures>> sensors;  ///< not numbers inside walls
   std::vector<RoomYear> rooms;                                ///< one for each group
