@@ -36,7 +36,7 @@ struct SunSampling {
 
 /// The same as means over patches, by the outlines of all shadows. Patches that are not important take one ray to each
 /// sun. `sky` has the patches' coefficients of `divisions`: only suns near a division from which a patch gets light are
-/// examined. Over mirrors the suns of a division stand together in their mean direction. \throws Canceled.
+/// examined. Over mirrors all suns of a division have their mean direction. \throws Canceled.
 std::vector<SparseSunlight> sunlight_on(const SunWays& ways, const PatchMesh& mesh, const SparseCoefficients& sky,
                                         const SkyDivisions& divisions, std::span<const Vector> suns,
                                         const SunSampling& sampling, const Observer& observer);

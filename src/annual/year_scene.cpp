@@ -109,7 +109,7 @@ SunsOfYear suns_of(const Year& year, const Scene& scene) {
 
 Eigen::VectorXf luminances_of(const Sky& sky, double horizontal, double ground, const SkyDivisions& divisions,
                               const Vector& up) {
-  SkyModel model = relative_sky(sky, up);
+  const SkyModel model = relative_sky(sky, up);
   // About 5,000 to 9,000 directions.
   const int across = divisions.size() < 300 ? 6 : divisions.size() < 1000 ? 3 : 2;
   Eigen::VectorXf found = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(divisions.size()));
@@ -127,12 +127,7 @@ Eigen::VectorXf luminances_of(const Sky& sky, double horizontal, double ground, 
     }
     return irradiance;
   };
-  double irradiance = add_all();
-  if (!(irradiance > 0)) {  // outside its data the fit can have no light anywhere
-    model.kind = SkyKind::uniform;
-    irradiance = add_all();
-  }
-  found *= static_cast<float>(horizontal / irradiance);
+  found *= static_cast<float>(horizontal / add_all());
   found[0] = static_cast<float>(ground);
   return found;
 }

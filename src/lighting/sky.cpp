@@ -144,14 +144,14 @@ SkyModel relative_sky(const Sky& sky, const Vector& up) {
     const double sun_zenith_angle = std::acos(std::clamp(sky.sun_direction.dot(up), 0.0, 1.0));
     model.coefficients = perez_coefficients(sky.clearness, sky.brightness, sun_zenith_angle);
   }
+  // Outside its data the fit can have no light anywhere.
+  if (!(relative_radiance(model, up) > 0 && horizontal_irradiance(model) > 0)) model.kind = SkyKind::uniform;
   return model;
 }
 
 SkyModel sky_model(const Sky& sky, const Vector& up) {
   assert(sky.horizontal_irradiance.size() > 0 || sky.zenith_radiance.size() > 0);
   SkyModel model = relative_sky(sky, up);
-  // Outside its data the fit can have no light anywhere.
-  if (!(relative_radiance(model, up) > 0 && horizontal_irradiance(model) > 0)) model.kind = SkyKind::uniform;
   if (sky.horizontal_irradiance.size() > 0) {
     model.colour = sky.horizontal_irradiance / horizontal_irradiance(model);
   } else {

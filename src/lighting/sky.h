@@ -26,7 +26,7 @@ struct SkyModel {
 SkyModel sky_model(const Sky& sky, const Vector& up);
 
 /// The same distribution with a radiance of 1 W/(m^2 sr) for a relative radiance of 1, over a black ground; its
-/// irradiance is left to the caller, who integrates by other means. May be dark outside the data of the fit.
+/// irradiance is left to the caller, who integrates by other means. Uniform where the fit has no light.
 SkyModel relative_sky(const Sky& sky, const Vector& up);
 
 /// Relative radiance of the sky in a unit direction not below the horizon; never negative.
