@@ -326,7 +326,8 @@ constexpr CommandText commands[] = {
      "levels of EN 17037 for each sensor and room. Sun and sky come from a weather file. Electric light is left out.",
      "# a year of a building with sensors in its rooms\npatchlight annual office.toml --weather city.epw -o year\n"
      "# for an office that is used from 7 to 17\npatchlight annual office.toml --weather city.epw --hours 7-17 -o "
-     "year\n"},
+     "year\n"
+     "# with white walls\npatchlight annual office.toml --weather city.epw --set wall.reflectance=0.8 -o year\n"},
     {"plan", understand, "Dry run: list the simulated effects and the expected cost", "MODEL... [OPTIONS]",
      "A dry run. Lists the effects that a run will simulate and why, and estimates patches, memory and time. It takes "
      "the options of patchlight solve that change these.",

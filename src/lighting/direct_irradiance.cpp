@@ -353,21 +353,14 @@ Estimate Estimator::by_sky(const Receiver& receiver, std::uint32_t key, double e
   const SkyAim aim = sky_aim(lighting(), receiver, is_point ? AimFor::points : AimFor::patch);
   const double samples = effort * (is_point ? effort_for_sky_at_point : 1) * options.sky_samples;
   const SampleSets sets = patchlight::sets_of(samples, is_point);
-  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
-  const Field arriving = replicates(key, sets, [&](std::span<const ReceiverSamples> of_sets) {
-    Field means(static_cast<Eigen::Index>(of_sets.size()), lighting().bands);
-    for (std::size_t k = 0; k < of_sets.size(); ++k) {
-      const SkyLight found = sky_irradiance(lighting(), receiver, aim, of_sets[k].rays);
-      means.row(static_cast<Eigen::Index>(k)) = found.irradiance;
-      seen.aimed += found.seen.aimed;
-      std::transform(seen.through.begin(), seen.through.end(), found.seen.through.begin(), seen.through.begin(),
-                     std::bit_or<>());
-    }
-    return means;
+  const SkyLight light = replicates(key, sets, [&](std::span<const ReceiverSamples> of_sets) {
+    std::vector<SamplePoints> rays;
+    for (const ReceiverSamples& set : of_sets) rays.push_back(set.rays);
+    return sky_irradiance(lighting(), receiver, aim, rays);
   });
-  Estimate found = estimate_of(arriving);
-  if (is_point && seen.aimed > 0)
-    found.variance += missed_sky(lighting(), receiver.place(0.5, 0.5), aim, seen).square();
+  Estimate found = estimate_of(light.irradiance);
+  if (is_point && light.seen.aimed > 0)
+    found.variance += missed_sky(lighting(), receiver.place(0.5, 0.5), aim, light.seen).square();
   return found;
 }
 

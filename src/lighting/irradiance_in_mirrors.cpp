@@ -186,6 +186,7 @@ OverChains MirrorSampler::over_chains(std::span<const WantedChain> chains, std::
 void visit_sky_from(const Lighting& lighting, std::span<const SampledPlace> places, const SkyInMirrors& how,
                     std::uint32_t key, const AtSky& at_sky) {
   const auto& [paths, aim, occluder] = *lighting.mirrors;
+  const auto set = static_cast<std::size_t>(places.front().replicate);
   const std::size_t each = how.is_point ? places.size() : 2;
   std::vector<Ray> rays;
   std::vector<double> weights;
@@ -205,7 +206,7 @@ void visit_sky_from(const Lighting& lighting, std::span<const SampledPlace> plac
   }
   walk(occluder, *lighting.paths.optics(), std::move(rays), {.seed = key},
        [&](const SpecularPath& path, const std::optional<Hit>& hit) {
-         if (!hit && path.reflections > 0) at_sky(path.ray.direction, weights[path.start] * path.throughput);
+         if (!hit && path.reflections > 0) at_sky(set, path.ray.direction, weights[path.start] * path.throughput);
          return Continuation::specular;
        });
 }
@@ -241,7 +242,7 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
     const auto last = std::find_if(first, all.end(), [&](const auto& p) { return p.replicate != first->replicate; });
     if (lighting.sky)
       visit_sky_from(lighting, {first, last}, to_sky, hash({key, static_cast<std::uint64_t>(first->replicate)}),
-                     [&](const Vector& direction, const Spectrum& weight) {
+                     [&](std::size_t, const Vector& direction, const Spectrum& weight) {
                        found.light.row(first->replicate) += weight * radiance(*lighting.sky, direction);
                      });
     first = last;

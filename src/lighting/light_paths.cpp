@@ -1,8 +1,26 @@
 #include "lighting/light_paths.h"
 
-#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
 
 namespace patchlight {
+namespace {
+
+// The rest of the segments from the last opening that they crossed.
+struct RaysToCross {
+  std::vector<Ray> rays;
+  std::vector<std::size_t> segment;
+  std::vector<double> gone;  // m, before the origin of the ray
+
+  void add(const Ray& ray, std::size_t of, double way) {
+    rays.push_back(ray);
+    segment.push_back(of);
+    gone.push_back(way);
+  }
+};
+
+}  // namespace
 
 LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
     : bounds_(bounds(scene)),
@@ -11,52 +29,41 @@ LightPaths::LightPaths(const Scene& scene, const Tracing& tracing)
       optics_(std::make_shared<const SurfaceOptics>(scene, tracing.reflections())) {}
 
 Field LightPaths::transmittance(std::span<const Segment> segments) const {
-  const auto blocked = opaque_->occluded(segments);
-  const auto meets_opening = clear_ ? clear_->occluded(segments) : std::vector<std::uint8_t>(segments.size(), 0);
-  Field share(static_cast<Eigen::Index>(segments.size()), optics_->bands());
-  for (std::size_t k = 0; k < segments.size(); ++k) {
-    auto row = share.row(static_cast<Eigen::Index>(k));
-    if (meets_opening[k] && !blocked[k])
-      row = through_openings(segments[k]).transmittance;
-    else
-      row = blocked[k] ? 0.0 : 1.0;
-  }
+  const std::vector<Passage> found = passages(segments);
+  Field share = Field::Zero(static_cast<Eigen::Index>(segments.size()), optics_->bands());
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    if (found[k].transmittance.size() > 0) share.row(static_cast<Eigen::Index>(k)) = found[k].transmittance;
   return share;
 }
 
 std::vector<Passage> LightPaths::passages(std::span<const Segment> segments) const {
   const auto blocked = opaque_->occluded(segments);
   std::vector<Passage> found(segments.size());
-  std::vector<Segment> free;
-  std::vector<std::size_t> index;
+  RaysToCross rays;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     if (blocked[k] != 0) continue;
-    free.push_back(segments[k]);
-    index.push_back(k);
+    found[k].transmittance = Spectrum::Ones(optics_->bands());
+    if (clear_)
+      rays.add({segments[k].from, (segments[k].to - segments[k].from).normalized(), segments[k].from_polygon}, k, 0);
   }
-  const auto meets_opening = clear_ ? clear_->occluded(free) : std::vector<std::uint8_t>(free.size(), 0);
-  for (std::size_t k = 0; k < free.size(); ++k)
-    found[index[k]] = meets_opening[k] != 0 ? through_openings(free[k]) : Passage{Spectrum::Ones(optics_->bands()), {}};
+  // A straight line meets each opening once at most. The limit stops endless loops.
+  for (int step = 0; step < 1 << 16 && !rays.rays.empty(); ++step) {
+    RaysToCross further;
+    const auto hits = clear_->first_hits(rays.rays);
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      const std::optional<Hit>& hit = hits[k];
+      const std::size_t of = rays.segment[k];
+      const double gone = hit ? rays.gone[k] + hit->distance : 0;
+      if (!hit || gone >= (segments[of].to - segments[of].from).norm() || hit->polygon == segments[of].to_polygon)
+        continue;
+      const Vector& direction = rays.rays[k].direction;
+      found[of].transmittance *= optics_->spectral_transmittance(hit->polygon, direction);
+      found[of].crossings.push_back({hit->polygon, gone});
+      further.add({hit->point, direction, hit->polygon}, of, gone);
+    }
+    rays = std::move(further);
+  }
   return found;
-}
-
-// Goes from opening to opening, each of which a straight line meets once at most. The limit stops endless loops.
-Passage LightPaths::through_openings(const Segment& segment) const {
-  Passage passage{Spectrum::Ones(optics_->bands()), {}};
-  const Vector way = segment.to - segment.from;
-  const double length = way.norm();
-  double gone = 0;
-  Ray ray{segment.from, way / length, segment.from_polygon};
-  for (int k = 0; k < 1 << 16; ++k) {
-    const std::optional<Hit> hit = clear_->first_hits({&ray, 1}).front();
-    if (!hit || gone + hit->distance >= length || hit->polygon == segment.to_polygon) break;
-    gone += hit->distance;
-    passage.transmittance *= optics_->spectral_transmittance(hit->polygon, ray.direction);
-    passage.crossings.push_back({hit->polygon, gone});
-    ray.origin = hit->point;
-    ray.from_polygon = hit->polygon;
-  }
-  return passage;
 }
 
 std::vector<std::uint8_t> LightPaths::meets_opaque(std::span<const Segment> segments) const {

@@ -62,8 +62,6 @@ class LightPaths {
   bool is_covered_in_part(PolygonIndex polygon, Side side) const;
 
  private:
-  Passage through_openings(const Segment& segment) const;
-
   Box bounds_;
   std::shared_ptr<const Occluder> opaque_;
   std::shared_ptr<const Occluder> clear_;  // null where there are no openings

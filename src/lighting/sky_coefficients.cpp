@@ -74,16 +74,15 @@ std::vector<SparseCoefficients> coefficients_of(const Lighting& lighting, std::s
     const SkyAim aim = sky_aim(lighting, receiver, receiver.is_point() ? AimFor::points : AimFor::patch);
     const auto samples =
         shifted(SamplePoints(points).first(samples_at(k)), hash({options.seed, k, stream::points_to_sky_divisions}));
-    visit_sky(lighting, receiver, aim, samples, [&](const Vector& direction, const Spectrum& weight) {
+    const AtSky add = [&](std::size_t, const Vector& direction, const Spectrum& weight) {
       rows[k].push_back({divisions.at(direction), weight});
-    });
+    };
+    const SamplePoints all = samples;
+    visit_sky(lighting, receiver, aim, {&all, 1}, add);
     if (lighting.mirrors) {
       const auto fewer = std::max<std::size_t>(4, samples.size() / 8);
       visit_sky_in_mirrors(lighting, receiver, SamplePoints(points).first(fewer),
-                           hash({options.seed, k, stream::shift_at_receiver}),
-                           [&](const Vector& direction, const Spectrum& weight) {
-                             rows[k].push_back({divisions.at(direction), weight});
-                           });
+                           hash({options.seed, k, stream::shift_at_receiver}), add);
     }
     rows[k] = joined(std::move(rows[k]));
   });

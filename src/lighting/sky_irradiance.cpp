@@ -75,47 +75,58 @@ double aimed_density(const Lighting& lighting, const std::vector<double>& probab
   return density;
 }
 
+// A ray of a set of samples.
+struct SkyRay {
+  std::size_t set = 0;
+  Vector direction;
+  double cosine = 0;                    // to the receiver's normal
+  std::optional<std::size_t> aimed_at;  // an opening; nothing: over the hemisphere
+};
+
+// The numbers of places of a set that send rays.
+struct SkyPlaces {
+  std::size_t all = 0;
+  std::size_t scattered = 0;  // with a ray over the hemisphere
+  std::size_t aimed = 0;      // with a ray to an opening
+};
+
 struct SkyRays {
-  std::vector<Vector> directions;
-  std::vector<double> cosines;  // to the receiver's normal
+  std::vector<SkyRay> rays;
   std::vector<Segment> segments;
-  std::vector<std::optional<std::size_t>> aimed_at;  // an opening; nothing: over the hemisphere
-  std::size_t places = 0;
-  std::size_t scattered = 0;  // places with a ray over the hemisphere
-  std::size_t aimed = 0;      // places with a ray to an opening
+  std::vector<SkyPlaces> places;  // per set
 };
 
 // Where there are panes, nearly all light comes through them. Half of the places send a ray to a pane. A quarter of
 // these also send one over the hemisphere. Rays to holes, which may be hidden from the receiver, are a third of all.
-SkyRays sky_rays(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
-  SkyRays rays;
-  const auto add = [&](const SurfacePoint& at, const Vector& direction, std::optional<std::size_t> aimed_at) {
+void add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim,
+             SkyRays& rays) {
+  const auto add = [&, set = rays.places.size()](const SurfacePoint& at, const Vector& direction,
+                                                 std::optional<std::size_t> aimed_at) {
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) return;
-    rays.aimed_at.push_back(aimed_at);
-    rays.directions.push_back(direction);
-    rays.cosines.push_back(cosine);
+    rays.rays.push_back({set, direction, cosine, aimed_at});
     rays.segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
   };
   // The first half or eighth of a Sobol sequence is spread as evenly as all of it.
   const std::size_t half = (samples.size() + 1) / 2;
   if (aim.at_panes) samples = samples.first(half);
   const std::size_t scattered = aim.at_panes ? (half + 3) / 4 : samples.size();
+  SkyPlaces places;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& [u, v, s, t] = samples[k];
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
-    ++rays.places;
+    ++places.all;
     if (k < scattered) {
-      ++rays.scattered;
+      ++places.scattered;
       add(at, cosine_direction(at.normal, s, t), std::nullopt);
     }
     if (aim.probabilities.empty() || k >= half) continue;
-    ++rays.aimed;
+    ++places.aimed;
     const Choice chosen = choose(aim.probabilities, s);
     add(at, toward(lighting.openings[chosen.index], at.point, chosen.rest, t), chosen.index);
   }
-  return rays;
+  rays.places.push_back(places);
 }
 
 // L tau cos cos' towards the middle or a corner of an opening, the largest of each band: where its middle is below the
@@ -177,40 +188,43 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
   return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 
-SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples) {
-  Spectrum irradiance = Spectrum::Zero(lighting.bands);
-  SkySeen seen = visit_sky(lighting, receiver, aim, samples, [&](const Vector& direction, const Spectrum& weight) {
-    irradiance += weight * radiance(*lighting.sky, direction);
-  });
+SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                        std::span<const SamplePoints> sets) {
+  Field irradiance = Field::Zero(static_cast<Eigen::Index>(sets.size()), lighting.bands);
+  SkySeen seen =
+      visit_sky(lighting, receiver, aim, sets, [&](std::size_t set, const Vector& direction, const Spectrum& weight) {
+        irradiance.row(static_cast<Eigen::Index>(set)) += weight * radiance(*lighting.sky, direction);
+      });
   return {std::move(irradiance), std::move(seen)};
 }
 
-SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples,
-                  const AtSky& at_sky) {
-  const SkyRays rays = sky_rays(lighting, receiver, samples, aim);
-  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), rays.aimed};
-  if (rays.places == 0) return seen;
+SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                  std::span<const SamplePoints> sets, const AtSky& at_sky) {
+  SkyRays all;
+  for (const SamplePoints samples : sets) add_set(lighting, receiver, samples, aim, all);
+  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
+  for (const SkyPlaces& places : all.places) seen.aimed += places.aimed;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
-  const double scattered = static_cast<double>(rays.scattered) / static_cast<double>(rays.places);
-  const double aimed = static_cast<double>(rays.aimed) / static_cast<double>(rays.places);
-  const std::vector<Passage> passages = lighting.paths.passages(rays.segments);
+  const std::vector<Passage> passages = lighting.paths.passages(all.segments);
   for (std::size_t k = 0; k < passages.size(); ++k) {
     const auto& [transmittance, crossings] = passages[k];
     if (!(transmittance > 0).any()) continue;
-    const Point& from = rays.segments[k].from;
-    const Vector& direction = rays.directions[k];
+    const auto& [set, direction, cosine, aimed_at] = all.rays[k];
+    const Point& from = all.segments[k].from;
     // A ray that slips past the edge of its opening belongs to neither kind.
-    const std::optional<std::size_t> aimed_at = rays.aimed_at[k];
     const bool is_aimed = aimed_at.has_value();
     if (is_aimed && !distance_to(lighting.openings[*aimed_at], from, direction, crossings)) continue;
     if (is_aimed) seen.through[*aimed_at] = 1;
-    const double over_hemisphere = scattered * rays.cosines[k] / std::numbers::pi;
-    const double at_openings = aimed * aimed_density(lighting, aim.probabilities, from, direction, crossings);
+    const SkyPlaces& places = all.places[set];
+    const auto number = static_cast<double>(places.all);
+    const double over_hemisphere = static_cast<double>(places.scattered) / number * cosine / std::numbers::pi;
+    const double at_openings = static_cast<double>(places.aimed) / number *
+                               aimed_density(lighting, aim.probabilities, from, direction, crossings);
     // Rays over the hemisphere that are so rare hardly ever get there, and their absence would not be noticed.
     const bool is_cut_off = at_openings > 8 * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;
     const double density = is_cut_off ? at_openings : over_hemisphere + at_openings;
-    at_sky(direction, transmittance * (rays.cosines[k] / (density * static_cast<double>(rays.places))));
+    at_sky(set, direction, transmittance * (cosine / (density * number)));
   }
   return seen;
 }

@@ -31,26 +31,28 @@ struct SkySeen {
   std::size_t aimed = 0;              ///< rays towards openings
 };
 
-/// A ray that has got to the sky: its direction, and its weight per band, the irradiance of the receiver
-/// by a radiance of 1 along it, sr.
-using AtSky = std::function<void(const Vector& direction, const Spectrum& weight)>;
+/// A ray that has got to the sky: the number of its set of samples, its direction, and its weight per band, the
+/// irradiance of the receiver by a radiance of 1 along it, sr.
+using AtSky = std::function<void(std::size_t set, const Vector& direction, const Spectrum& weight)>;
 
 /// The light of the sky that rays find.
 struct SkyLight {
-  Spectrum irradiance;
+  Field irradiance;  ///< a row for each set of samples
   SkySeen seen;
 };
 
-/// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies: by a
-/// ray for each sample, distributed as the cosine over the hemisphere, and others towards openings, put together by the
-/// balance heuristic (Veach and Guibas 1995, eq. 14): with clear faces a second one for each of half of the samples,
-/// with holes alone one more for each of the first half. Where these are many times as dense they alone count (the
-/// cutoff heuristic of the same paper). Only the first kind finds light through a gap that is no opening.
-SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples);
+/// Mean irradiance of a receiver by sky and ground, W/m^2 per band, over the part of it over which nothing lies. Each
+/// set of samples gives an independent estimate: by a ray for each sample, distributed as the cosine over the
+/// hemisphere, and others towards openings, put together by the balance heuristic (Veach and Guibas 1995, eq. 14): with
+/// clear faces a second one for each of half of the samples, with holes alone one more for each of the first half.
+/// Where these are many times as dense they alone count (the cutoff heuristic of the same paper). Only the first kind
+/// finds light through a gap that is no opening.
+SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                        std::span<const SamplePoints> sets);
 
-/// The rays of sky_irradiance() one by one: the mean irradiance is the sum of weight times radiance over all of them.
-SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim, SamplePoints samples,
-                  const AtSky& at_sky);
+/// The rays of sky_irradiance() one by one: the irradiance of a set is the sum of weight times radiance over its rays.
+SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
+                  std::span<const SamplePoints> sets, const AtSky& at_sky);
 
 /// The light that one ray towards openings would bring to a point, W/m^2: the most, in each band, by any opening
 /// through which none of so many has got to the sky. As no hit of n rays means at most a few of n, this is how far off
