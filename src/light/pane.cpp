@@ -16,15 +16,10 @@ std::array<double, 2> through_surface(double index, double cosine, double cosine
   return {product / (across * across), product / (along * along)};
 }
 
-// For one polarization.
-struct Shares {
-  double transmitted = 0;
-  double reflected = 0;
-};
-
-// The geometric series of the ways between both surfaces: T = t^2 a / (1 - r^2 a^2), R = r (1 + t^2 a^2 / (1 - r^2
-// a^2)). A surface has the reflectance r = 1 - t, and a is the share that is left after one way across.
-Shares shares_of(double t, double a) {
+// For one polarization: the geometric series of the ways between both surfaces: T = t^2 a / (1 - r^2 a^2), R = r (1 +
+// t^2 a^2 / (1 - r^2 a^2)). A surface has the reflectance r = 1 - t, and a is the share that is left after one way
+// across.
+PaneShares shares_of(double t, double a) {
   const double r = 1 - t;
   const double left = (t + r * (1 - a)) * (1 + r * a);  // 1 - r^2 a^2
   if (!(left > 0)) return {0, 1};
@@ -32,19 +27,15 @@ Shares shares_of(double t, double a) {
   return {once, r * (1 + a * once)};
 }
 
-// The mean of both polarizations.
-Shares unpolarised(const Pane& pane, double cosine) {
-  const double sine_inside = std::sqrt(std::fmax(0, 1 - cosine * cosine)) / pane.index;
-  const double cosine_inside = std::sqrt(1 - sine_inside * sine_inside);
-  // Holes in a sheet without thickness are the same share of it from everywhere.
-  const double a = pane.index == 1 ? pane.internal : std::pow(pane.internal, 1 / cosine_inside);
-  Shares mean;
-  for (const double t : through_surface(pane.index, cosine, cosine_inside)) {
-    const Shares shares = shares_of(t, a);
-    mean.transmitted += shares.transmitted / 2;
-    mean.reflected += shares.reflected / 2;
+// One value for each pane. Most spectra have one value for all bands, which is computed once.
+template <class Value>
+Spectrum each(const std::vector<Pane>& panes, const Value& value_of) {
+  Spectrum values(static_cast<Eigen::Index>(panes.size()));
+  for (std::size_t k = 0; k < panes.size(); ++k) {
+    const auto band = static_cast<Eigen::Index>(k);
+    values[band] = k > 0 && panes[k] == panes[k - 1] ? values[band - 1] : value_of(panes[k]);
   }
-  return mean;
+  return values;
 }
 
 }  // namespace
@@ -62,9 +53,23 @@ Pane pane_of(double index, double transmittance) {
   return {index, 2 * transmittance / (t + std::sqrt(t * t + 4 * r * r * transmittance * transmittance))};
 }
 
-double transmittance(const Pane& pane, double cosine) { return unpolarised(pane, cosine).transmitted; }
+PaneShares shares(const Pane& pane, double cosine) {
+  const double sine_inside = std::sqrt(std::fmax(0, 1 - cosine * cosine)) / pane.index;
+  const double cosine_inside = std::sqrt(1 - sine_inside * sine_inside);
+  // Holes in a sheet without thickness are the same share of it from everywhere.
+  const double a = pane.index == 1 ? pane.internal : std::pow(pane.internal, 1 / cosine_inside);
+  PaneShares mean;
+  for (const double t : through_surface(pane.index, cosine, cosine_inside)) {
+    const PaneShares one = shares_of(t, a);
+    mean.transmitted += one.transmitted / 2;
+    mean.reflected += one.reflected / 2;
+  }
+  return mean;
+}
 
-double specular_reflectance(const Pane& pane, double cosine) { return unpolarised(pane, cosine).reflected; }
+double transmittance(const Pane& pane, double cosine) { return shares(pane, cosine).transmitted; }
+
+double specular_reflectance(const Pane& pane, double cosine) { return shares(pane, cosine).reflected; }
 
 std::vector<Pane> panes_of(double index, const Spectrum& transmittance) {
   std::vector<Pane> panes;
@@ -73,17 +78,11 @@ std::vector<Pane> panes_of(double index, const Spectrum& transmittance) {
 }
 
 Spectrum transmittance(const std::vector<Pane>& panes, double cosine) {
-  Spectrum share(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t band = 0; band < panes.size(); ++band)
-    share[static_cast<Eigen::Index>(band)] = transmittance(panes[band], cosine);
-  return share;
+  return each(panes, [&](const Pane& pane) { return transmittance(pane, cosine); });
 }
 
 Spectrum specular_reflectance(const std::vector<Pane>& panes, double cosine) {
-  Spectrum share(static_cast<Eigen::Index>(panes.size()));
-  for (std::size_t band = 0; band < panes.size(); ++band)
-    share[static_cast<Eigen::Index>(band)] = specular_reflectance(panes[band], cosine);
-  return share;
+  return each(panes, [&](const Pane& pane) { return specular_reflectance(pane, cosine); });
 }
 
 double nonspecular_rest(double specular) { return std::max(1e-6, 1 - specular); }
@@ -96,8 +95,10 @@ double irradiance_of_step(std::size_t step) { return 2 * cosine_of_step(step) / 
 Spectrum hemispherical_nonspecular(const std::vector<Pane>& panes, bool reflections_go_on) {
   Spectrum nonspecular = Spectrum::Zero(static_cast<Eigen::Index>(panes.size()));
   for (std::size_t k = 0; k < cosine_steps; ++k) {
-    Spectrum onward = transmittance(panes, cosine_of_step(k));
-    if (reflections_go_on) onward += specular_reflectance(panes, cosine_of_step(k));
+    const Spectrum onward = each(panes, [&](const Pane& pane) {
+      const auto [transmitted, reflected] = shares(pane, cosine_of_step(k));
+      return transmitted + (reflections_go_on ? reflected : 0);
+    });
     nonspecular += irradiance_of_step(k) * onward.unaryExpr(&nonspecular_rest);
   }
   return nonspecular;

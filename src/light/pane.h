@@ -13,12 +13,23 @@ namespace patchlight {
 struct Pane {
   double index = 1;     ///< of refraction, at least 1; that of air, 1: a sheet with holes, the same at all angles
   double internal = 1;  ///< internal transmittance at normal incidence; 1: no absorption
+
+  bool operator==(const Pane&) const = default;
 };
 
 /// The pane of an index of refraction, at least 1, with the transmittance `transmittance`, in [0, 1], at normal
 /// incidence. If reflection at this index leaves less than that even without absorption, the index is reduced and
 /// nothing is absorbed. An index of 1 is no pane at all.
 Pane pane_of(double index, double transmittance);
+
+/// Fractions of the light at one angle; a pane absorbs the rest.
+struct PaneShares {
+  double transmitted = 0;
+  double reflected = 0;
+};
+
+/// Both at an angle of incidence with this cosine, in [0, 1], as the mean of both polarizations.
+PaneShares shares(const Pane& pane, double cosine);
 
 /// The transmittance at an angle of incidence with this cosine, in [0, 1].
 double transmittance(const Pane& pane, double cosine);

@@ -232,7 +232,7 @@ OverChains MirrorSampler::replicates_at(const Receiver& receiver, std::uint32_t 
                                         std::span<const WantedChain> among) const {
   const std::vector<WantedChain> chains = chains_to(ball_of(receiver), among);
   const SurfacePoint middle = receiver.place(0.5, 0.5);
-  const Spectrum unfollowed = lighting.mirrors->paths.unfollowed_irradiance(middle.point, middle.normal);
+  const Spectrum unfollowed = lighting.mirrors->paths.unfollowed_irradiance(lights, middle.point, middle.normal);
   if (chains.empty() && !lighting.sky) return {Field::Zero(1, lighting.bands), unfollowed};
   const std::vector<SampledPlace> places = places_on(receiver, key, effort);
   OverChains found = over_chains(chains, places_for_chains(places, chains.size()));

@@ -188,12 +188,12 @@ double LightSource::possible_irradiance(const SurfacePoint& at) const {
 }
 
 LightSampler::LightSampler(const Lighting& lighting, std::vector<EmitterFace> faces) : lighting_(&lighting) {
-  std::uint32_t id = 0;
+  std::uint32_t id = 1U << 31;
   for (const Luminaire& luminaire : lighting.luminaires) sources_.emplace_back(luminaire, lighting.up, id++);
   if (lighting.sun) sources_.emplace_back(lighting, *lighting.sun, id);
   without_faces_ = sources_.size();
   for (EmitterFace& face : faces) {
-    const std::uint32_t of_polygon = id + 1 + face.polygon;
+    const std::uint32_t of_polygon = face.polygon;
     sources_.emplace_back(std::move(face), of_polygon);
   }
 }

@@ -64,13 +64,14 @@ class LightSource {
   LightSource(const Lighting& lighting, const Sun& sun, std::uint32_t id);
   LightSource(EmitterFace face, std::uint32_t id);
 
-  /// The same for a source in every LightSampler of one lighting. Faces of one polygon share theirs.
+  /// The same for a source in every LightSampler of one lighting. Faces have that of their polygon.
   std::uint32_t id() const { return id_; }
   const SourceExtent& extent() const { return extent_; }
   /// A unit vector; narrow beams lie around it.
   const Vector& axis() const { return axis_; }
   /// True if light comes from one point or direction.
   bool is_delta() const { return is_delta_; }
+  bool is_face() const { return std::holds_alternative<OfFace>(of_); }
 
   /// The light from one point of the source, for (u, v) of the unit square. Points inside of a sphere get nothing.
   LightSample sample(const SurfacePoint& at, const Eigen::Vector2d& uv) const;
@@ -126,6 +127,9 @@ class LightSampler {
 
   /// Luminaires and the sun.
   std::span<const LightSource> without_faces() const { return std::span(sources_).first(without_faces_); }
+
+  /// True if some source is a face, or if some is none.
+  bool has_any(bool is_face) const { return is_face ? sources_.size() > without_faces_ : without_faces_ > 0; }
 
   /// Chooses sources for a point by possible_irradiance(): about `rays` shadow rays among those without extent, one
   /// each, and as many among the others, two or more each. The sun always gets one. Up to four of a kind all get rays.

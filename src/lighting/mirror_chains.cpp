@@ -283,6 +283,7 @@ class ChainSearch {
 
  private:
   QueuedChain continued(const QueuedChain& before, std::size_t side);
+  std::vector<Spectrum>& left_by(const Beam& beam) { return left_[sources_[beam.source].source->is_face() ? 1 : 0]; }
   double share_of(const Beam& beam) const { return beam.flux.mean() / sources_[beam.source].flux.mean(); }
   void add(QueuedChain candidate);
   void add_single();
@@ -298,8 +299,8 @@ class ChainSearch {
   std::vector<std::array<double, 4>> points_ = scrambled_sobol(16, 1);  // of a mirror
   double most_reflectance_ = 0;
   std::size_t work_ = 0;
-  double reflected_ = 0;        // W, straight from the sources, mean of the bands
-  std::vector<Spectrum> left_;  // W, from each side
+  double reflected_ = 0;                       // W, straight from the sources, mean of the bands
+  std::array<std::vector<Spectrum>, 2> left_;  // of others and of faces: W, from each side
   std::set<QueuedChain> queue_;
   std::size_t number_ = 0;
   MirrorChains found_;
@@ -313,7 +314,7 @@ ChainSearch::ChainSearch(const Scene& scene, std::span<const LightSource> source
     hulls_.push_back(convex_hull(corners_.back(), side.normal));
     most_reflectance_ = std::max(most_reflectance_, side.reflectance);
   }
-  left_.assign(sides_.size(), Spectrum::Zero(bands));
+  left_.fill(std::vector<Spectrum>(sides_.size(), Spectrum::Zero(bands)));
   for (const LightSource& source : sources) {
     sources_.push_back(flux_of(source, bands));
     found_.ranked.push_back(source.id());
@@ -349,14 +350,15 @@ QueuedChain ChainSearch::continued(const QueuedChain& before, std::size_t number
 // Chains that continue it are counted with it.
 void ChainSearch::leave_out(const QueuedChain& candidate, const Beam& beam) {
   const double all = 1 + light_beyond(candidate.chain.mirrors.size(), most_reflectance_);
-  left_[candidate.first] += all * candidate.chain.reflectance * beam.flux;
+  left_by(beam)[candidate.first] += all * candidate.chain.reflectance * beam.flux;
 }
 
 // The chains that continue one that is followed itself.
 void ChainSearch::leave_out_longer(const QueuedChain& candidate) {
   found_.is_cut = true;
   const double longer = light_beyond(candidate.chain.mirrors.size(), most_reflectance_);
-  for (const Beam& beam : candidate.beams) left_[candidate.first] += longer * candidate.chain.reflectance * beam.flux;
+  for (const Beam& beam : candidate.beams)
+    left_by(beam)[candidate.first] += longer * candidate.chain.reflectance * beam.flux;
 }
 
 // Beams with less than 1e-7 of the flux of their source are not followed. No more chains wait than may be followed yet:
@@ -439,10 +441,13 @@ MirrorChains ChainSearch::run() {
     found_.chains.back().beyond = light_beyond(next.chain.mirrors.size(), add_longer(next));
   }
   double left = 0;
-  for (std::size_t k = 0; k < sides_.size(); ++k) {
-    if (!(left_[k] > 0).any()) continue;
-    left += left_[k].mean();
-    found_.unfollowed.push_back({corners_[k], left_[k] / area_vector(corners_[k]).norm()});
+  for (const bool is_of_faces : {false, true}) {
+    for (std::size_t k = 0; k < sides_.size(); ++k) {
+      const Spectrum& of_side = left_[is_of_faces ? 1 : 0][k];
+      if (!(of_side > 0).any()) continue;
+      left += of_side.mean();
+      found_.unfollowed.push_back({corners_[k], of_side / area_vector(corners_[k]).norm(), is_of_faces});
+    }
   }
   found_.unfollowed_share = reflected_ > 0 ? left / reflected_ : 0;
   return found_;

@@ -42,6 +42,7 @@ struct MirrorChain {
 struct UnfollowedLight {
   std::vector<Point> corners;  ///< of the mirror, counter-clockwise from the side that reflects
   Spectrum exitance;           ///< W/m^2, after the reflection at this mirror and at later ones
+  bool is_of_faces = false;    ///< it is that of all emitter faces; else of all luminaires and the sun
 };
 
 /// Chains of planar mirrors and clear faces, those with the largest share first. The share is the fraction of a

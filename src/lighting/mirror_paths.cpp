@@ -76,10 +76,11 @@ bool MirrorPaths::carries(const MirrorChain& chain, std::uint32_t source) const 
   return holds(chain.sources) || !holds(chains_.ranked);
 }
 
-Spectrum MirrorPaths::unfollowed_irradiance(const Point& place, const Vector& normal) const {
+Spectrum MirrorPaths::unfollowed_irradiance(const LightSampler& lights, const Point& place,
+                                            const Vector& normal) const {
   Spectrum irradiance = Spectrum::Zero(optics_->bands());
-  for (const auto& [corners, exitance] : chains_.unfollowed)
-    irradiance += point_to_polygon(place, normal, corners) * exitance;
+  for (const auto& [corners, exitance, is_of_faces] : chains_.unfollowed)
+    if (lights.has_any(is_of_faces)) irradiance += point_to_polygon(place, normal, corners) * exitance;
   return irradiance;
 }
 

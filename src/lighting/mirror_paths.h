@@ -27,8 +27,9 @@ class MirrorPaths {
   /// False where no light of a source, by its LightSource::id(), gets through a chain.
   bool carries(const MirrorChain& chain, std::uint32_t source) const;
 
-  /// Irradiance at a place if the light that is not followed left each mirror diffusely and nothing were in the way.
-  Spectrum unfollowed_irradiance(const Point& place, const Vector& normal) const;
+  /// Irradiance at a place if the light that is not followed left each mirror diffusely and nothing were in the way:
+  /// that of all emitter faces if `lights` has any, and that of all luminaires and the sun if it has any of these.
+  Spectrum unfollowed_irradiance(const LightSampler& lights, const Point& place, const Vector& normal) const;
 
   /// Per segment (row), from a receiver to a source, and band (column), by way of the mirrors of a chain: 0 where the
   /// straight line from the receiver's image to the source misses one of them.

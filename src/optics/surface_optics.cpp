@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -26,9 +27,8 @@ SpecularSurface::SpecularSurface(const Scene& scene, PolygonIndex polygon, Refle
     const std::vector<Pane>& panes = panes_[s];
     if (is_clear) index_ += material.index / 2;
     for (std::size_t band = 0; band < panes.size() && is_clear; ++band) {
-      const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
-        return part.pane.index == panes[band].index && part.pane.internal == panes[band].internal;
-      });
+      const auto found =
+          std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) { return part.pane == panes[band]; });
       const double weight = shares[static_cast<Eigen::Index>(band)] / 2;
       if (found == parts_.end()) {
         parts_.push_back({weight, panes[band]});
@@ -58,10 +58,9 @@ Spectrum SpecularSurface::spectral_reflectance(Side side, double cosine) const {
 }
 
 bool SpecularSurface::transmits_colour() const {
-  const auto differs = [](const Pane& a, const Pane& b) { return a.index != b.index || a.internal != b.internal; };
-  for (const std::vector<Pane>& panes : panes_)
-    if (std::adjacent_find(panes.begin(), panes.end(), differs) != panes.end()) return true;
-  return false;
+  return std::ranges::any_of(panes_, [](const std::vector<Pane>& panes) {
+    return std::ranges::adjacent_find(panes, std::not_equal_to()) != panes.end();
+  });
 }
 
 void SpecularSurface::tabulate_nonspecular() {
@@ -72,25 +71,25 @@ void SpecularSurface::tabulate_nonspecular() {
   for (double& upto : nonspecular_upto_) upto /= nonspecular_[0];
 }
 
-double SpecularSurface::transmittance(double cosine) const {
-  double sum = 0;
-  for (const Part& part : parts_) sum += part.weight * patchlight::transmittance(part.pane, cosine);
+PaneShares SpecularSurface::by_panes(double cosine) const {
+  PaneShares sum;
+  for (const Part& part : parts_) {
+    const auto [transmitted, reflected] = patchlight::shares(part.pane, cosine);
+    sum.transmitted += part.weight * transmitted;
+    if (reflections_ != Reflections::kept) sum.reflected += part.weight * reflected;
+  }
   return sum;
 }
 
-double SpecularSurface::reflected_by_panes(double cosine) const {
-  if (reflections_ == Reflections::kept) return 0;
-  double sum = 0;
-  for (const Part& part : parts_) sum += part.weight * specular_reflectance(part.pane, cosine);
-  return sum;
-}
+double SpecularSurface::transmittance(double cosine) const { return by_panes(cosine).transmitted; }
 
 double SpecularSurface::reflectance(Side side, double cosine) const {
-  return parts_.empty() ? mirrored_[static_cast<std::size_t>(side)] : reflected_by_panes(cosine);
+  return parts_.empty() ? mirrored_[static_cast<std::size_t>(side)] : by_panes(cosine).reflected;
 }
 
 double SpecularSurface::kept(double cosine) const {
-  return nonspecular_rest(transmittance(cosine) + reflected_by_panes(cosine));
+  const auto [transmitted, reflected] = by_panes(cosine);
+  return nonspecular_rest(transmitted + reflected);
 }
 
 double SpecularSurface::nonspecular_fraction(Side side) const { return nonspecular_[static_cast<std::size_t>(side)]; }
@@ -100,7 +99,8 @@ SpecularShares SpecularSurface::shares(Side side, double cosine) const {
     const auto s = static_cast<std::size_t>(side);
     return {0, mirrored_[s], nonspecular_[s], 1};
   }
-  SpecularShares shares{transmittance(cosine), reflected_by_panes(cosine), 0, 0};
+  const auto [transmitted, reflected] = by_panes(cosine);
+  SpecularShares shares{transmitted, reflected, 0, 0};
   shares.nonspecular = nonspecular_rest(shares.transmitted + shares.mirrored);
   shares.nonspecular_profile = shares.nonspecular / nonspecular_[0];
   return shares;

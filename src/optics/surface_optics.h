@@ -79,7 +79,7 @@ class SpecularSurface {
   };
   void tabulate_nonspecular();
   double kept(double cosine) const;
-  double reflected_by_panes(double cosine) const;
+  PaneShares by_panes(double cosine) const;  // reflections that are kept count as absorbed
 
   Reflections reflections_;
   double index_ = 0;  // of clear ones, the mean of both sides

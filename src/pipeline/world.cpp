@@ -14,9 +14,8 @@ namespace {
 // Computed on first use.
 class LightingOnDemand {
  public:
-  // `make_scene` is called only for the light that is not known yet: it may copy.
-  const Lighting& of(const auto& make_scene, const Tracing& tracing) {
-    std::call_once(once_, [&] { lighting_.emplace(lighting_of(make_scene(), tracing)); });
+  const Lighting& of(const auto& make) {
+    std::call_once(once_, [&] { lighting_.emplace(make()); });
     return *lighting_;
   }
 
@@ -46,30 +45,30 @@ std::shared_ptr<const World> World::in_bands(const std::vector<Eigen::Index>& ba
 }
 
 const Lighting& World::lighting() const {
-  return later_->planned.of([this]() -> const Scene& { return *planned_; }, tracing_);
+  return later_->planned.of([this] { return lighting_of(*planned_, tracing_); });
 }
 
 const Lighting& World::lighting_in_one_band() const {
   assert(lamp_color_.size() > 0);
   Eigen::Index brightest = 0;
   lamp_color_.maxCoeff(&brightest);
-  return later_->in_one_band.of([&] { return in_one_band(*planned_, brightest); }, tracing_);
+  return later_->in_one_band.of([&] { return lighting_of(in_one_band(*planned_, brightest), tracing_); });
 }
 
 const Lighting& World::sensor_lighting() const {
   if (for_sensors_ == planned_) return lighting();
-  return later_->for_sensors.of([this]() -> const Scene& { return *for_sensors_; }, tracing_);
+  return later_->for_sensors.of([this] { return lighting_of(*for_sensors_, tracing_); });
 }
 
 const Lighting& World::lighting_by_polygons() const {
-  const auto without_other_light = [this] {
-    Scene scene = *planned_;
-    scene.luminaires.clear();
-    scene.sun.reset();
-    scene.sky.reset();
-    return scene;
-  };
-  return later_->by_polygons.of(without_other_light, tracing_);
+  return later_->by_polygons.of([this] {
+    Lighting faces_alone = lighting();  // with the same chains of mirrors
+    faces_alone.luminaires.clear();
+    faces_alone.sun.reset();
+    faces_alone.sky.reset();
+    faces_alone.openings.clear();
+    return faces_alone;
+  });
 }
 
 }  // namespace patchlight
