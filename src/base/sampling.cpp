@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <boost/random/sobol.hpp>
+#include <cmath>
+#include <iterator>
 #include <numbers>
+#include <numeric>
 
 namespace patchlight {
 namespace {
@@ -125,16 +128,17 @@ Vector cosine_direction(const Vector& normal, double u, double v) {
   return local.x() * across + local.y() * normal.cross(across) + local.z() * normal;
 }
 
-Choice choose(std::span<const double> probabilities, double u) {
-  Choice choice;
-  double before = 0;
-  for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
-    choice = {k, std::clamp((u - before) / probabilities[k], 0.0, 1.0)};
-    before += probabilities[k];
-    if (u < before) break;
-  }
-  return choice;
+Chooser::Chooser(std::span<const double> probabilities) : probabilities_(probabilities) {
+  upto_.reserve(probabilities.size());
+  std::partial_sum(probabilities.begin(), probabilities.end(), std::back_inserter(upto_));
+}
+
+Choice Chooser::at(double u) const {
+  auto found = std::upper_bound(upto_.begin(), upto_.end(), u);
+  if (found == upto_.end()) found = std::lower_bound(upto_.begin(), upto_.end(), upto_.back());
+  const auto k = static_cast<std::size_t>(found - upto_.begin());
+  const double before = k > 0 ? upto_[k - 1] : 0;
+  return {k, std::clamp((u - before) / probabilities_[k], 0.0, 1.0)};
 }
 
 }  // namespace patchlight

@@ -33,8 +33,17 @@ struct Choice {
   double rest = 0;  ///< in [0, 1]
 };
 
-/// Never one without probability: when rounding leaves a rest after the last, that one.
-Choice choose(std::span<const double> probabilities, double u);
+/// Chooses among some probabilities, which must outlive it. Never one without probability: when rounding leaves a rest
+/// after the last, that one. O(log n) for n probabilities.
+class Chooser {
+ public:
+  explicit Chooser(std::span<const double> probabilities);
+  Choice at(double u) const;
+
+ private:
+  std::span<const double> probabilities_;
+  std::vector<double> upto_;  // partial sums
+};
 
 /// Barycentric weights (b1, b2) of a uniformly distributed point p0 + b1 (p1 - p0) + b2 (p2 - p0) of a triangle.
 Eigen::Vector2d square_to_triangle(double u, double v);

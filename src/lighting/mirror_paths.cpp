@@ -217,6 +217,7 @@ std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<con
                                            std::span<const std::array<double, 2>> samples) const {
   const std::size_t aimed = probabilities.empty() ? 0 : samples.size() / 2;
   const std::size_t diffuse = samples.size() - aimed;
+  const Chooser targets(probabilities);
   std::vector<WeightedRay> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -225,7 +226,7 @@ std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<con
     if (k < diffuse) {
       direction = cosine_direction(at.normal, s, t);
     } else {
-      const Choice chosen = choose(probabilities, s);
+      const Choice chosen = targets.at(s);
       direction = (point_of(targets_[chosen.index], chosen.rest, t) - at.point).normalized();
     }
     const double cosine = at.normal.dot(direction);

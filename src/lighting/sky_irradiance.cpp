@@ -34,8 +34,9 @@ double free_share_ahead(const Lighting& lighting, const Receiver& receiver, cons
 // Does a ray to the sky through one of the holes get there?
 bool sees_sky_through_holes(const Lighting& lighting, const Receiver& receiver,
                             const std::vector<double>& probabilities) {
+  const Chooser openings(probabilities);
   return free_share_ahead(lighting, receiver, [&](const SurfacePoint& at, double s, double t) {
-           const Choice opening = choose(probabilities, s);
+           const Choice opening = openings.at(s);
            return toward(lighting.openings[opening.index], at.point, opening.rest, t);
          }) > 0;
 }
@@ -111,6 +112,7 @@ void add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints sa
   const std::size_t half = (samples.size() + 1) / 2;
   if (aim.at_panes) samples = samples.first(half);
   const std::size_t scattered = aim.at_panes ? (half + 3) / 4 : samples.size();
+  const Chooser openings(aim.probabilities);
   SkyPlaces places;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& [u, v, s, t] = samples[k];
@@ -123,7 +125,7 @@ void add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints sa
     }
     if (aim.probabilities.empty() || k >= half) continue;
     ++places.aimed;
-    const Choice chosen = choose(aim.probabilities, s);
+    const Choice chosen = openings.at(s);
     add(at, toward(lighting.openings[chosen.index], at.point, chosen.rest, t), chosen.index);
   }
   rays.places.push_back(places);

@@ -59,14 +59,14 @@ std::vector<Seen> HemisphereSampler::look(PatchIndex patch, const std::vector<Ra
 // `groups` starting points, each with `size` directions.
 std::vector<Ray> HemisphereSampler::hemisphere_rays(PatchIndex patch, int groups, int size, std::uint32_t seed) const {
   const auto samples = scrambled_sobol(static_cast<std::uint32_t>(groups * size), seed);
-  const PatchCorners corners = mesh.corner_points(patch);
+  const QuadPoints places(mesh.corner_points(patch).points);
   const Eigen::Matrix3d frame = patch_frame(mesh, patch);
   std::vector<Ray> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     // The first points of the sequence, as every eighth alone would lie in an eighth of the patch.
     const auto& start = samples[k / static_cast<std::size_t>(size)];
-    rays.push_back({square_to_quad(corners.points, start[0], start[1]),
+    rays.push_back({places.at(start[0], start[1]),
                     frame * (ends_at_specular ? square_to_cosine_hemisphere(samples[k][2], samples[k][3])
                                               : occluder.optics().sample_nonspecular_direction(
                                                     mesh.polygon[patch], samples[k][2], samples[k][3])),

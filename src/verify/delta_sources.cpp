@@ -208,7 +208,7 @@ std::vector<LightSample> DeltaSources::sample(const LitPoint& at, double choice,
   std::vector<LightSample> chosen;
   if (sum > 0) {
     for (double& size : sizes) size /= sum;
-    const std::size_t k = choose(sizes, choice).index;
+    const std::size_t k = Chooser(sizes).at(choice).index;
     chosen.push_back({samples[k].from, samples[k].irradiance / sizes[k]});
   }
   const double cosine = sun_ ? at.normal.dot(sun_->direction) : 0;
@@ -303,8 +303,9 @@ void MirrorImages::tally_light(const Scene& scene, std::uint64_t seed) {
     double area = 0;
     for (const double of_one : areas) area += of_one;
     for (double& of_one : areas) of_one /= area;
+    const Chooser by_area(areas);
     for (const auto& u : scrambled_sobol(points, hash({seed, s, stream::mirror_tests}))) {
-      const Choice choice = choose(areas, u[0]);
+      const Choice choice = by_area.at(u[0]);
       const auto& [a, b, c] = triangles[choice.index];
       const Eigen::Vector2d weights = square_to_triangle(choice.rest, u[1]);
       const Point point = a + weights[0] * (b - a) + weights[1] * (c - a);
