@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace patchlight {
@@ -86,8 +85,8 @@ YearScene scene_of_year(const Scene& read, const Year& year) {
   Sky sky{.kind = SkyKind::cie_overcast};
   sky.horizontal_irradiance =
       Spectrum::Constant(static_cast<Eigen::Index>(groups.size()), reference_illuminance / luminous_efficacy);
-  sky.ground_radiance = year.ground_reflectance / std::numbers::pi * sky.horizontal_irradiance;
-  result.scene.sky = sky;
+  result.scene.sky =
+      above_ground({{}, sky}, year.ground_reflectance, read.up, static_cast<Eigen::Index>(groups.size())).sky;
   result.scene.photometric = true;
   return result;
 }

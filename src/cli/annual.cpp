@@ -71,8 +71,7 @@ double ground_reflectance(const AnnualArguments& arguments, const Scene& scene) 
   if (arguments.read.daylight.ground_reflectance) return *arguments.read.daylight.ground_reflectance;
   constexpr double usual = 0.2;
   if (!arguments.weather.empty() || !scene.sky || scene.sky->horizontal_irradiance.size() == 0) return usual;
-  Spectrum on_ground = scene.sky->horizontal_irradiance;
-  if (scene.sun) on_ground += std::max(0.0, scene.sun->direction.dot(scene.up)) * scene.sun->normal_irradiance;
+  const Spectrum on_ground = irradiance_of_ground({scene.sun, scene.sky}, scene.up, number_of_bands(scene));
   if (scene.sky->ground_radiance.size() == 0 || !(on_ground.mean() > 0)) return usual;
   return std::numbers::pi * scene.sky->ground_radiance.mean() / on_ground.mean();
 }

@@ -93,14 +93,6 @@ Daylight with_spectra(Daylight daylight, const LightEntries& lights) {
   return daylight;
 }
 
-// The irradiance of open horizontal ground.
-Spectrum on_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
-  Spectrum irradiance = Spectrum::Zero(bands);
-  if (daylight.sky) irradiance += daylight.sky->horizontal_irradiance;
-  if (daylight.sun) irradiance += std::max(0.0, daylight.sun->direction.dot(up)) * daylight.sun->normal_irradiance;
-  return irradiance;
-}
-
 // The row of a weather file, and the light that follows from it.
 Diagnostic note_on(const WeatherHour& weather, const Daylight& daylight, const Bands& bands) {
   const SolarPosition sun = solar_position(weather.place, weather.middle);
@@ -134,12 +126,7 @@ Scene with_lights(Scene scene, const LightEntries& lights) {
     throw InputError(lights.where, "a file read before has sun or sky; expected each once");
   if (lights.weather) scene.diagnostics.push_back(note_on(*lights.weather, daylight, bands_of(scene)));
   if (daylight.sun) scene.sun = daylight.sun;
-  if (daylight.sky) {
-    // L = rho E / pi
-    const Spectrum irradiance = on_ground({scene.sun, daylight.sky}, scene.up, bands);
-    daylight.sky->ground_radiance = lights.ground_reflectance / std::numbers::pi * irradiance;
-  }
-  if (daylight.sky) scene.sky = daylight.sky;
+  if (daylight.sky) scene.sky = above_ground({scene.sun, daylight.sky}, lights.ground_reflectance, scene.up, bands).sky;
   return scene;
 }
 

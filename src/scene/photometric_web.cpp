@@ -226,6 +226,19 @@ std::size_t perez_class(double clearness) {
   return static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), clearness) - limits.begin());
 }
 
+Spectrum irradiance_of_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands) {
+  Spectrum irradiance = Spectrum::Zero(bands);
+  if (daylight.sky) irradiance += daylight.sky->horizontal_irradiance;
+  if (daylight.sun) irradiance += std::max(0.0, daylight.sun->direction.dot(up)) * daylight.sun->normal_irradiance;
+  return irradiance;
+}
+
+Daylight above_ground(Daylight daylight, double reflectance, const Vector& up, Eigen::Index bands) {
+  if (daylight.sky)
+    daylight.sky->ground_radiance = reflectance / std::numbers::pi * irradiance_of_ground(daylight, up, bands);
+  return daylight;
+}
+
 Daylight measured_daylight(const SolarIrradiance& measured, const Vector& sun_direction, const Vector& up,
                            Eigen::Index bands) {
   const double sine = std::clamp(sun_direction.dot(up), 0.0, 1.0);

@@ -46,6 +46,12 @@ struct Daylight {
   std::optional<Sky> sky;  ///< nothing where there is no diffuse irradiance
 };
 
+/// The irradiance of open horizontal ground, W/m^2 per band. Horizontal irradiance describes the sky.
+Spectrum irradiance_of_ground(const Daylight& daylight, const Vector& up, Eigen::Index bands);
+
+/// The same daylight above matt ground, whose radiance is L = rho E / pi. Unchanged without a sky.
+Daylight above_ground(Daylight daylight, double reflectance, const Vector& up, Eigen::Index bands);
+
 /// The sun and the Perez sky from measured irradiances. Clearness and brightness follow Perez, Ineichen, Seals,
 /// Michalsky and Stewart 1990, eqs. 1 and 2. Their luminous efficacies (eqs. 6 to 8) convert the measurements to
 /// visible light: all `bands` are equal, with 179 lm/W. The ground is black. If the sun is below the horizon, the sky

@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -249,13 +248,8 @@ Year daylight_of(const WeatherYear& weather, const Scene& scene, double ground_r
   for (const WeatherHour& hour : weather.hours) {
     Daylight light = daylight_of(hour, scene.up, scene.north, 3);
     if (light.sun) in_bands(light.sun->normal_irradiance);
-    if (light.sky) {
-      in_bands(light.sky->horizontal_irradiance);
-      Spectrum on_ground = light.sky->horizontal_irradiance;
-      if (light.sun) on_ground += std::max(0.0, light.sun->direction.dot(scene.up)) * light.sun->normal_irradiance;
-      light.sky->ground_radiance = ground_reflectance / std::numbers::pi * on_ground;
-    }
-    year.hours.push_back(std::move(light));
+    if (light.sky) in_bands(light.sky->horizontal_irradiance);
+    year.hours.push_back(above_ground(std::move(light), ground_reflectance, scene.up, number_of_bands(scene)));
   }
   return year;
 }
