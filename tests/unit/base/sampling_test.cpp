@@ -94,6 +94,22 @@ TEST(SquareToQuad, StaysInItAtTheEndOfTheSquare) {
   EXPECT_LT((square_to_quad(square, 1, 0.5) - Point(0.5, 1, 0)).norm(), 1e-15);
 }
 
+// Probabilities that are sums of powers of two, so that the bounds between them are exact.
+TEST(Chooser, SharesOutTheUnitIntervalInOrder) {
+  const std::vector<double> probabilities{0, 0.25, 0, 0.5, 0.25, 0};
+  const Chooser chooser(probabilities);
+  const auto expect = [&](double u, std::size_t index, double rest) {
+    EXPECT_EQ(chooser.at(u).index, index) << u;
+    EXPECT_EQ(chooser.at(u).rest, rest) << u;
+  };
+  expect(0, 1, 0);
+  expect(0.125, 1, 0.5);
+  expect(0.25, 3, 0);
+  expect(0.5, 3, 0.5);
+  expect(0.75, 4, 0);
+  expect(1, 4, 1);  // single precision rounds numbers just below 1 to 1
+}
+
 TEST(SquareToCosineHemisphere, HasItsDensity) {
   // P(cos theta > c) = 1 - c^2; and the density integrates to 1 over the hemisphere (midpoint rule in cos theta).
   const auto points = scrambled_sobol(4096, 11);

@@ -63,6 +63,27 @@ TEST(LightPaths, EndBehindTheLastOpeningThatCounts) {
   EXPECT_NEAR(share(scene, {Point(0, 0, -1), Point(0, 0, 0.9)}), 0.8, rounding);
 }
 
+// Rays that cross no opening, one, two or three, and a blocked one.
+TEST(LightPaths, AreTheSameForManySegmentsAsForEach) {
+  Scene scene = with_sheet(with_sheet(with_sheet(nothing(), 0, 1), 1, 2), 2, 1);
+  scene = with_sheet(std::move(scene), 4, 0);
+  const LightPaths paths(scene, Tracing(scene));
+  std::vector<Segment> segments;
+  for (const double end : {-0.5, 0.5, 1.5, 2.5, 5.0, 3.0, 0.7})
+    segments.push_back({Point(0.1, 0.2, -1), Point(0.1, 0.2, end)});
+  const std::vector<Passage> together = paths.passages(segments);
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const Passage alone = paths.passages({&segments[k], 1})[0];
+    ASSERT_EQ(together[k].transmittance.size(), alone.transmittance.size()) << k;
+    EXPECT_TRUE((together[k].transmittance == alone.transmittance).all()) << k;
+    ASSERT_EQ(together[k].crossings.size(), alone.crossings.size()) << k;
+    for (std::size_t n = 0; n < alone.crossings.size(); ++n)
+      EXPECT_EQ(together[k].crossings[n].distance, alone.crossings[n].distance);
+  }
+  EXPECT_EQ(together[3].crossings.size(), 3U);
+  EXPECT_NEAR(together[3].crossings[2].distance, 3, 1e-6);
+}
+
 TEST(LightPaths, EndAtAnythingOpaque) {
   const Scene scene = with_sheet(with_sheet(nothing(), 0, 1), 1, 0);
   EXPECT_EQ(share(scene, {Point(0, 0, -1), Point(0, 0, 3)}), 0);

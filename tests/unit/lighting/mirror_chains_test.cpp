@@ -152,6 +152,20 @@ TEST(MirrorChains, OfFacetsThatAreTooManyAreInTheError) {
   expect_error_of_missing_light(facets, lighting);
 }
 
+// Light of luminaires that is not followed is no error of the light of faces.
+TEST(MirrorChains, LeaveOutLightByKindOfSource) {
+  const Facets facets(std::array{Point(0.7, 0.3, 1.1)});
+  const Tracing tracing(facets.scene, {}, Occluder::Blockers::all, Reflections::followed);
+  const Lighting lighting = lighting_of(facets.scene, tracing);
+  const auto last = static_cast<PolygonIndex>(facets.scene.polygons.size() - 1);
+  Lighting of_faces = lighting;
+  of_faces.luminaires.clear();
+  const LightSampler faces(of_faces, emitter_faces(facets.scene, last, Side::front));
+  const MirrorPaths& paths = lighting.mirrors->paths;
+  EXPECT_TRUE((paths.unfollowed_irradiance(lighting, facets.at.point, facets.at.normal) > 0).all());
+  EXPECT_TRUE((paths.unfollowed_irradiance(faces, facets.at.point, facets.at.normal) == 0).all());
+}
+
 // Facets of one plane have no reflections among each other: all light of a hundred lamps is followed.
 TEST(MirrorChains, AllSingleReflectionsOfManyLampsInManyMirrorsAreFollowed) {
   constexpr int edge = 10;
