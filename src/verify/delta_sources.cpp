@@ -111,7 +111,7 @@ LightSample from_point(const Luminaire& luminaire, const Vector& up, const LitPo
 // A direction uniform in the cone that the sphere fills: L cos(theta) over its density 1 / (2 pi (1 - cos(cone))).
 // Shirley, Wang and Zimmerman 1996, section 3.2.
 LightSample from_sphere(const SphericalLamp& lamp, const Point& center, const LitPoint& at, const Eigen::Vector2d& uv) {
-  const LightSample dark{center, Spectrum::Zero(lamp.exitance.size())};
+  LightSample dark{center, Spectrum::Zero(lamp.exitance.size())};
   const double distance = (center - at.point).norm();
   if (distance <= lamp.radius) return dark;
   const double sine_of_cone = lamp.radius / distance;
