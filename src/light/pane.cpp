@@ -16,9 +16,9 @@ std::array<double, 2> through_surface(double index, double cosine, double cosine
   return {product / (across * across), product / (along * along)};
 }
 
-// For one polarization: the geometric series of the ways between both surfaces: T = t^2 a / (1 - r^2 a^2), R = r (1 +
-// t^2 a^2 / (1 - r^2 a^2)). A surface has the reflectance r = 1 - t, and a is the share that is left after one way
-// across.
+// For one polarization, by the geometric series of the reflections between both surfaces: T = t^2 a / (1 - r^2 a^2), R
+// = r (1 + t^2 a^2 / (1 - r^2 a^2)). A surface has the reflectance r = 1 - t, and a is the share that is left after one
+// way across.
 PaneShares shares_of(double t, double a) {
   const double r = 1 - t;
   const double left = (t + r * (1 - a)) * (1 + r * a);  // 1 - r^2 a^2

@@ -95,40 +95,41 @@ struct SkyRays {
   std::vector<SkyRay> rays;
   std::vector<Segment> segments;
   std::vector<SkyPlaces> places;  // per set
+
+  void add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim);
 };
 
 // Where there are panes, nearly all light comes through them. Half of the places send a ray to a pane. A quarter of
 // these also send one over the hemisphere. Rays to holes, which may be hidden from the receiver, are a third of all.
-void add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim,
-             SkyRays& rays) {
-  const auto add = [&, set = rays.places.size()](const SurfacePoint& at, const Vector& direction,
-                                                 std::optional<std::size_t> aimed_at) {
+void SkyRays::add_set(const Lighting& lighting, const Receiver& receiver, SamplePoints samples, const SkyAim& aim) {
+  const auto add = [&, set = places.size()](const SurfacePoint& at, const Vector& direction,
+                                            std::optional<std::size_t> aimed_at) {
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) return;
-    rays.rays.push_back({set, direction, cosine, aimed_at});
-    rays.segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
+    rays.push_back({set, direction, cosine, aimed_at});
+    segments.push_back({at.point, lighting.paths.beyond(at.point, direction), at.polygon, no_polygon});
   };
   // The first half or eighth of a Sobol sequence is spread as evenly as all of it.
   const std::size_t half = (samples.size() + 1) / 2;
   if (aim.at_panes) samples = samples.first(half);
   const std::size_t scattered = aim.at_panes ? (half + 3) / 4 : samples.size();
   const Chooser openings(aim.probabilities);
-  SkyPlaces places;
+  SkyPlaces of_set;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& [u, v, s, t] = samples[k];
     const SurfacePoint at = receiver.place(u, v);
     if (is_covered(lighting, receiver, at)) continue;
-    ++places.all;
+    ++of_set.all;
     if (k < scattered) {
-      ++places.scattered;
+      ++of_set.scattered;
       add(at, cosine_direction(at.normal, s, t), std::nullopt);
     }
     if (aim.probabilities.empty() || k >= half) continue;
-    ++places.aimed;
+    ++of_set.aimed;
     const Choice chosen = openings.at(s);
     add(at, toward(lighting.openings[chosen.index], at.point, chosen.rest, t), chosen.index);
   }
-  rays.places.push_back(places);
+  places.push_back(of_set);
 }
 
 // L tau cos cos' towards the middle or a corner of an opening, the largest of each band: where its middle is below the
@@ -203,7 +204,7 @@ SkyLight sky_irradiance(const Lighting& lighting, const Receiver& receiver, cons
 SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyAim& aim,
                   std::span<const SamplePoints> sets, const AtSky& at_sky) {
   SkyRays all;
-  for (const SamplePoints samples : sets) add_set(lighting, receiver, samples, aim, all);
+  for (const SamplePoints samples : sets) all.add_set(lighting, receiver, samples, aim);
   SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
   for (const SkyPlaces& places : all.places) seen.aimed += places.aimed;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
