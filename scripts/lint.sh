@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks the format of every C++ file, the names in Python files, the module layers and the prose; with --tidy also runs clang-tidy, when it is installed, on all
-# sources or on those that have changed since the commit BASE. All take about an hour of one processor.
+# Checks the format of every C++ file, the names in Python files, the module layers, the prose, and the comments of public
+# headers. With --tidy it also runs clang-tidy, where that is installed, on all sources or on those that changed since the
+# commit BASE. All sources take about an hour of one processor.
 # usage: scripts/lint.sh [--tidy [BASE]]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -11,6 +12,7 @@ echo "lint: ${#files[@]} files are formatted"
 pyflakes3 scripts tests
 python3 scripts/check_layers.py
 python3 scripts/check_prose.py
+scripts/doxygen.sh
 
 if [ "${1:-}" = --tidy ]; then
   command -v clang-tidy >/dev/null || { echo "lint: clang-tidy is not installed; left out"; exit 0; }
