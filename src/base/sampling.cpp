@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <boost/random/sobol.hpp>
+#include <cassert>
 #include <cmath>
-#include <iterator>
 #include <numbers>
-#include <numeric>
 
 namespace patchlight {
 namespace {
@@ -128,17 +127,30 @@ Vector cosine_direction(const Vector& normal, double u, double v) {
   return local.x() * across + local.y() * normal.cross(across) + local.z() * normal;
 }
 
-Chooser::Chooser(std::span<const double> probabilities) : probabilities_(probabilities) {
-  upto_.reserve(probabilities.size());
-  std::partial_sum(probabilities.begin(), probabilities.end(), std::back_inserter(upto_));
+Chooser::Chooser(std::span<const double> probabilities) {
+  double sum = 0;
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    if (!(probabilities[k] > 0)) continue;
+    sum += probabilities[k];
+    alternatives_.push_back({k, probabilities[k], sum});
+  }
+}
+
+std::span<const Alternative> Chooser::alternatives_from(std::size_t index) const {
+  return {std::ranges::lower_bound(alternatives_, index, {}, &Alternative::index), alternatives_.end()};
+}
+
+double Chooser::probability_of(std::size_t index) const {
+  const auto from = alternatives_from(index);
+  return !from.empty() && from.front().index == index ? from.front().probability : 0;
 }
 
 Choice Chooser::at(double u) const {
-  auto found = std::upper_bound(upto_.begin(), upto_.end(), u);
-  if (found == upto_.end()) found = std::lower_bound(upto_.begin(), upto_.end(), upto_.back());
-  const auto k = static_cast<std::size_t>(found - upto_.begin());
-  const double before = k > 0 ? upto_[k - 1] : 0;
-  return {k, std::clamp((u - before) / probabilities_[k], 0.0, 1.0)};
+  assert(!empty());
+  auto found = std::ranges::upper_bound(alternatives_, u, {}, &Alternative::up_to);
+  if (found == alternatives_.end()) --found;
+  const double before = found->up_to - found->probability;
+  return {found->index, std::clamp((u - before) / found->probability, 0.0, 1.0)};
 }
 
 }  // namespace patchlight

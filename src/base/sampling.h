@@ -33,16 +33,34 @@ struct Choice {
   double rest = 0;  ///< in [0, 1]
 };
 
-/// Chooses among some probabilities, which must outlive it. Never one without probability: when rounding leaves a rest
-/// after the last, that one. O(log n) for n probabilities.
+/// What may be chosen.
+struct Alternative {
+  std::size_t index = 0;
+  double probability = 0;  ///< positive
+  double up_to = 0;        ///< the sum of all probabilities up to this one
+};
+
+/// Chooses among some probabilities whose sum is 1. Where rounding leaves a rest after the last, it chooses the last.
+/// O(log n) for n probabilities.
 class Chooser {
  public:
+  Chooser() = default;
   explicit Chooser(std::span<const double> probabilities);
+
+  bool empty() const { return alternatives_.empty(); }
+
+  /// In the order of their indices.
+  std::span<const Alternative> alternatives() const { return alternatives_; }
+  std::span<const Alternative> alternatives_from(std::size_t index) const;
+
+  /// 0 for one that may not be chosen.
+  double probability_of(std::size_t index) const;
+
+  /// Not for an empty one.
   Choice at(double u) const;
 
  private:
-  std::span<const double> probabilities_;
-  std::vector<double> upto_;  // partial sums
+  std::vector<Alternative> alternatives_;  // those with a probability above 0
 };
 
 /// Barycentric weights (b1, b2) of a uniformly distributed point p0 + b1 (p1 - p0) + b2 (p2 - p0) of a triangle.

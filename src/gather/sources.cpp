@@ -147,7 +147,7 @@ std::vector<std::array<double, 2>> HemisphereRays::samples(std::uint64_t key, st
 HemisphereHits HemisphereRays::hits(const Sensor& sensor, std::uint32_t each, std::uint32_t stage) const {
   const std::uint64_t key = hash({key_of(sensor, occluder_.frame(), seed_, stage), stream::hemisphere_of_sensor});
   const SurfacePoint at{sensor.point, sensor.normal};
-  const std::vector<double> targets = aim_ != nullptr ? aim_->probabilities_from(at) : std::vector<double>();
+  const Chooser targets = aim_ != nullptr ? aim_->targets_from(at) : Chooser();
   const std::uint32_t count = targets.empty() ? each : 2 * each;
   HemisphereHits found{{}, static_cast<double>(most_replicates) * count};
   for (std::uint32_t r = 0; r < most_replicates; ++r) {

@@ -90,12 +90,12 @@ std::vector<SampledPlace> places_for_chains(std::span<const SampledPlace> places
 // How a receiver looks for sky in mirrors.
 struct SkyInMirrors {
   bool is_point = false;
-  std::vector<double> probabilities = {};  // SpecularAim::probabilities_from() the middle
+  Chooser targets = {};  // SpecularAim::targets_from() the middle
 };
 
 SkyInMirrors sky_in_mirrors(const Lighting& lighting, const Receiver& receiver) {
   SkyInMirrors how{.is_point = receiver.is_point()};
-  if (lighting.sky) how.probabilities = lighting.mirrors->aim.probabilities_from(receiver.place(0.5, 0.5));
+  if (lighting.sky) how.targets = lighting.mirrors->aim.targets_from(receiver.place(0.5, 0.5));
   return how;
 }
 
@@ -196,10 +196,9 @@ void visit_sky_from(const Lighting& lighting, std::span<const SampledPlace> plac
       const std::array<double, 4>& sample = places[(k + n) % places.size()].sample;
       samples.push_back({sample[2], sample[3]});
     }
-    const std::vector<double> probabilities =
-        how.probabilities.empty() ? aim.probabilities_from(places[k].at) : how.probabilities;
-    if (probabilities.empty() && aim.has_all_faces()) continue;  // no reflection can be seen
-    for (const auto& [ray, weight] : aim.rays(places[k].at, probabilities, samples)) {
+    const Chooser targets = how.targets.empty() ? aim.targets_from(places[k].at) : how.targets;
+    if (targets.empty() && aim.has_all_faces()) continue;  // no reflection can be seen
+    for (const auto& [ray, weight] : aim.rays(places[k].at, targets, samples)) {
       rays.push_back(ray);
       weights.push_back(how.is_point ? weight : weight / static_cast<double>(places.size()));
     }

@@ -179,8 +179,7 @@ SpecularAim::SpecularAim(const Scene& scene, const SurfaceOptics& optics) {
   if (!has_all_faces_) targets_.resize(max_targets);
 }
 
-// The probability of each target to be chosen; none where no target is before the receiver.
-std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) const {
+Chooser SpecularAim::targets_from(const SurfacePoint& at) const {
   std::vector<double> probabilities;
   double sum = 0;
   for (const Opening& target : targets_) {
@@ -198,26 +197,23 @@ std::vector<double> SpecularAim::probabilities_from(const SurfacePoint& at) cons
     sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
   }
   for (double& probability : probabilities) probability /= sum;
-  return probabilities;
+  return Chooser(probabilities);
 }
 
 // 1/sr
-double SpecularAim::aimed_density(std::span<const double> probabilities, const SurfacePoint& at,
-                                  const Vector& direction) const {
+double SpecularAim::aimed_density(const Chooser& targets, const SurfacePoint& at, const Vector& direction) const {
   double density = 0;
-  for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
+  for (const auto& [k, probability, up_to] : targets.alternatives()) {
     if (const auto distance = distance_to(targets_[k], at.point, direction))
-      density += density_at(targets_[k], probabilities[k], *distance, direction);
+      density += density_at(targets_[k], probability, *distance, direction);
   }
   return density;
 }
 
-std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<const double> probabilities,
+std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, const Chooser& targets,
                                            std::span<const std::array<double, 2>> samples) const {
-  const std::size_t aimed = probabilities.empty() ? 0 : samples.size() / 2;
+  const std::size_t aimed = targets.empty() ? 0 : samples.size() / 2;
   const std::size_t diffuse = samples.size() - aimed;
-  const Chooser targets(probabilities);
   std::vector<WeightedRay> rays;
   rays.reserve(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -232,7 +228,7 @@ std::vector<WeightedRay> SpecularAim::rays(const SurfacePoint& at, std::span<con
     const double cosine = at.normal.dot(direction);
     if (!(cosine > 0)) continue;
     const double density = static_cast<double>(diffuse) * cosine / std::numbers::pi +
-                           static_cast<double>(aimed) * aimed_density(probabilities, at, direction);
+                           static_cast<double>(aimed) * aimed_density(targets, at, direction);
     rays.push_back({{at.point, direction, at.polygon}, cosine / density});
   }
   return rays;

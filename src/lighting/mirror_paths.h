@@ -2,6 +2,7 @@
 
 #include "patchlight/base/field.h"
 
+#include "base/sampling.h"
 #include "lighting/light_paths.h"
 #include "lighting/mirror_chains.h"
 #include "lighting/sky_openings.h"
@@ -65,18 +66,18 @@ class SpecularAim {
   /// False if there are too many clear faces and mirrors for all to be targets.
   bool has_all_faces() const { return has_all_faces_; }
 
-  /// The probability of each target at a place, by its apparent size; 0 for all but the 32 largest and those of equal
-  /// size. Empty if no target is above the place's horizon.
-  std::vector<double> probabilities_from(const SurfacePoint& at) const;
+  /// The targets of a place, by their apparent sizes: the 32 largest and those of equal size. Empty if no target is
+  /// above the place's horizon.
+  Chooser targets_from(const SurfacePoint& at) const;
 
   /// Half of the samples, two numbers each, become directions distributed as the cosine over the hemisphere. The others
-  /// become points on targets, chosen by `probabilities`. The balance heuristic combines both (Veach and Guibas 1995).
-  /// Without probabilities all are distributed as the cosine.
-  std::vector<WeightedRay> rays(const SurfacePoint& at, std::span<const double> probabilities,
+  /// become points on targets, chosen by `targets`. The balance heuristic combines both (Veach and Guibas 1995).
+  /// Without targets all are distributed as the cosine.
+  std::vector<WeightedRay> rays(const SurfacePoint& at, const Chooser& targets,
                                 std::span<const std::array<double, 2>> samples) const;
 
  private:
-  double aimed_density(std::span<const double> probabilities, const SurfacePoint& at, const Vector& direction) const;
+  double aimed_density(const Chooser& targets, const SurfacePoint& at, const Vector& direction) const;
 
   bool has_all_faces_ = true;
   std::vector<Opening> targets_;  // the clear faces and mirrors, the largest first

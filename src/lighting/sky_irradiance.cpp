@@ -32,9 +32,7 @@ double free_share_ahead(const Lighting& lighting, const Receiver& receiver, cons
 }
 
 // Does a ray to the sky through one of the holes get there?
-bool sees_sky_through_holes(const Lighting& lighting, const Receiver& receiver,
-                            const std::vector<double>& probabilities) {
-  const Chooser openings(probabilities);
+bool sees_sky_through_holes(const Lighting& lighting, const Receiver& receiver, const Chooser& openings) {
   return free_share_ahead(lighting, receiver, [&](const SurfacePoint& at, double s, double t) {
            const Choice opening = openings.at(s);
            return toward(lighting.openings[opening.index], at.point, opening.rest, t);
@@ -59,19 +57,18 @@ std::optional<double> distance_to(const Opening& opening, const Point& from, con
 }
 
 // Density of the rays towards openings, 1/sr, for such a ray. Without probabilities there are none.
-double aimed_density(const Lighting& lighting, const std::vector<double>& probabilities, const Point& from,
-                     const Vector& direction, const std::vector<Crossing>& crossings) {
+double aimed_density(const Lighting& lighting, const Chooser& aimed, const Point& from, const Vector& direction,
+                     const std::vector<Crossing>& crossings) {
   double density = 0;
-  if (probabilities.empty()) return density;
+  if (aimed.empty()) return density;
   const std::vector<Opening>& openings = lighting.openings;
-  for (std::size_t k = first_hole(openings); k < openings.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
-    if (const auto distance = distance_to(openings[k], from, direction))
-      density += density_at(openings[k], probabilities[k], *distance, direction);
+  for (const Alternative& hole : aimed.alternatives_from(first_hole(openings))) {
+    if (const auto distance = distance_to(openings[hole.index], from, direction))
+      density += density_at(openings[hole.index], hole.probability, *distance, direction);
   }
   for (const Crossing& crossing : crossings) {
     if (const auto k = opening_of(openings, crossing.polygon))
-      density += density_at(openings[*k], probabilities[*k], crossing.distance, direction);
+      density += density_at(openings[*k], aimed.probability_of(*k), crossing.distance, direction);
   }
   return density;
 }
@@ -113,7 +110,6 @@ void SkyRays::add_set(const Lighting& lighting, const Receiver& receiver, Sample
   const std::size_t half = (samples.size() + 1) / 2;
   if (aim.at_panes) samples = samples.first(half);
   const std::size_t scattered = aim.at_panes ? (half + 3) / 4 : samples.size();
-  const Chooser openings(aim.probabilities);
   SkyPlaces of_set;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto& [u, v, s, t] = samples[k];
@@ -124,9 +120,9 @@ void SkyRays::add_set(const Lighting& lighting, const Receiver& receiver, Sample
       ++of_set.scattered;
       add(at, cosine_direction(at.normal, s, t), std::nullopt);
     }
-    if (aim.probabilities.empty() || k >= half) continue;
+    if (aim.openings.empty() || k >= half) continue;
     ++of_set.aimed;
-    const Choice chosen = openings.at(s);
+    const Choice chosen = aim.openings.at(s);
     add(at, toward(lighting.openings[chosen.index], at.point, chosen.rest, t), chosen.index);
   }
   places.push_back(of_set);
@@ -164,7 +160,8 @@ std::vector<Point> corners_of(const Opening& opening) {
 
 SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) {
   const SurfacePoint at = receiver.place(0.5, 0.5);
-  SkyAim aim;
+  std::vector<double> probabilities;
+  bool at_panes = false;
   double sum = 0;
   for (const Opening& opening : lighting.openings) {
     const double square = (opening.centre - at.point).squaredNorm();
@@ -176,18 +173,18 @@ SkyAim sky_aim(const Lighting& lighting, const Receiver& receiver, AimFor what) 
     const bool is_hidden =
         what == AimFor::points && is_before && !is_own && lighting.paths.hides(places, corners_of(opening));
     const double weight = is_before && !is_own && !is_hidden ? apparent_size(opening, at.point) : 0;
-    aim.probabilities.push_back(weight);
-    aim.at_panes = aim.at_panes || (weight > 0 && opening.polygon != no_polygon);
+    probabilities.push_back(weight);
+    at_panes = at_panes || (weight > 0 && opening.polygon != no_polygon);
     sum += weight;
   }
   if (!(sum > 0)) return {};
   const auto count = static_cast<double>(
-      std::count_if(aim.probabilities.begin(), aim.probabilities.end(), [](double weight) { return weight > 0; }));
+      std::count_if(probabilities.begin(), probabilities.end(), [](double weight) { return weight > 0; }));
   constexpr double any_alike = 0.125;
-  for (double& probability : aim.probabilities)
+  for (double& probability : probabilities)
     probability = probability > 0 ? (1 - any_alike) * probability / sum + any_alike / count : 0;
-  if (!aim.at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.probabilities))
-    return {};
+  const SkyAim aim{Chooser(probabilities), at_panes};
+  if (!at_panes && what == AimFor::patch && !sees_sky_through_holes(lighting, receiver, aim.openings)) return {};
   return sees_much_sky(lighting, receiver) ? SkyAim() : aim;
 }
 
@@ -205,7 +202,7 @@ SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyA
                   std::span<const SamplePoints> sets, const AtSky& at_sky) {
   SkyRays all;
   for (const SamplePoints samples : sets) all.add_set(lighting, receiver, samples, aim);
-  SkySeen seen{std::vector<std::uint8_t>(aim.probabilities.size(), 0), 0};
+  SkySeen seen{std::vector<std::uint8_t>(aim.openings.empty() ? 0 : lighting.openings.size(), 0), 0};
   for (const SkyPlaces& places : all.places) seen.aimed += places.aimed;
   // Each ray counts L cos tau over the density of rays of both kinds in its direction.
   const std::vector<Passage> passages = lighting.paths.passages(all.segments);
@@ -221,8 +218,8 @@ SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyA
     const SkyPlaces& places = all.places[set];
     const auto number = static_cast<double>(places.all);
     const double over_hemisphere = static_cast<double>(places.scattered) / number * cosine / std::numbers::pi;
-    const double at_openings = static_cast<double>(places.aimed) / number *
-                               aimed_density(lighting, aim.probabilities, from, direction, crossings);
+    const double at_openings =
+        static_cast<double>(places.aimed) / number * aimed_density(lighting, aim.openings, from, direction, crossings);
     // Rays over the hemisphere that are so rare hardly ever get there, and their absence would not be noticed.
     const bool is_cut_off = at_openings > 8 * over_hemisphere;
     if (is_cut_off && !is_aimed) continue;
@@ -234,9 +231,9 @@ SkySeen visit_sky(const Lighting& lighting, const Receiver& receiver, const SkyA
 
 Spectrum missed_sky(const Lighting& lighting, const SurfacePoint& at, const SkyAim& aim, const SkySeen& seen) {
   Spectrum most = Spectrum::Zero(lighting.bands);
-  for (std::size_t k = 0; k < aim.probabilities.size(); ++k) {
-    if (seen.through[k] != 0 || !(aim.probabilities[k] > 0)) continue;
-    const double rays = static_cast<double>(seen.aimed) * aim.probabilities[k];
+  for (const auto& [k, probability, up_to] : aim.openings.alternatives()) {
+    if (seen.through[k] != 0) continue;
+    const double rays = static_cast<double>(seen.aimed) * probability;
     const double size = apparent_size(lighting.openings[k], at.point);
     most = most.max(brightest_of(lighting, at, lighting.openings[k]) * size / rays);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/sampling.h"
 #include "lighting/receiver.h"
 
 #include <cstddef>
@@ -11,8 +12,8 @@ namespace patchlight {
 
 /// Towards which openings rays go from a receiver.
 struct SkyAim {
-  std::vector<double> probabilities;  ///< of each of Lighting::openings to be chosen; none: no rays
-  bool at_panes = false;              ///< some of these are clear faces
+  Chooser openings;       ///< among Lighting::openings; empty: no rays
+  bool at_panes = false;  ///< some of these are clear faces
 };
 
 /// The purpose of rays: the mean over a patch, or single points.

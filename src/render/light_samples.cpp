@@ -146,11 +146,9 @@ class SkySampler {
 // As often as a triangle fills the hemisphere, about, with its cosine.
 void SkySampler::add_targets(std::size_t index) {
   const SurfacePoint& at = points_[index].at;
-  const std::vector<double>& probabilities = points_[index].aim->probabilities;
   double sum = 0;
-  for (std::size_t k = 0; k < probabilities.size(); ++k) {
-    if (!(probabilities[k] > 0)) continue;
-    for (const std::array<Point, 3>& corners : lighting_.openings[k].triangles) {
+  for (const Alternative& opening : points_[index].aim->openings.alternatives()) {
+    for (const std::array<Point, 3>& corners : lighting_.openings[opening.index].triangles) {
       const SphericalTriangle triangle(at.point, corners);
       const double weight = triangle.solid_angle() * triangle.mean_cosine(at.normal);
       if (!(weight > 1e-8)) continue;  // sr; rays over the hemisphere find smaller ones
@@ -190,7 +188,7 @@ void SkySampler::add_ray(std::size_t index, const Vector& direction, std::uint32
 
 void SkySampler::add(std::size_t index) {
   const LitPoint& point = points_[index];
-  if (!point.aim->probabilities.empty()) add_targets(index);
+  add_targets(index);
   const std::uint32_t aimed = targets_.size() == begin_[index] ? 0 : std::max(1U, count_ - 1);
   for (std::uint32_t k = 0; k < aimed; ++k) {
     auto u = pixel_sample_2d(point.sample * aimed + k, hash({point.seed, stream::sky_openings}));
@@ -276,17 +274,22 @@ Field light_samples(const LightSampler& lights, std::span<const LitPoint> points
   return irradiance;
 }
 
-SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings) {
-  std::vector<std::size_t> order(aim.probabilities.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return aim.probabilities[a] > aim.probabilities[b]; });
+SkyAim aim_at_few(const SkyAim& aim, const std::vector<Opening>& openings) {
+  const auto all = aim.openings.alternatives();
+  std::vector<Alternative> by_size(all.begin(), all.end());
+  std::ranges::stable_sort(by_size, std::greater<>(), &Alternative::probability);
+  std::vector<double> few(openings.size(), 0);
   std::size_t triangles = 0;
-  for (const std::size_t k : order) {
-    triangles += openings[k].triangles.size();
-    if (triangles > 32) aim.probabilities[k] = 0;
+  double sum = 0;
+  for (const Alternative& opening : by_size) {
+    triangles += openings[opening.index].triangles.size();
+    if (triangles > 32) break;
+    few[opening.index] = opening.probability;
+    sum += opening.probability;
   }
-  return aim;
+  if (!(sum > 0)) return {};
+  for (double& probability : few) probability /= sum;
+  return {Chooser(few), aim.at_panes};
 }
 
 }  // namespace patchlight

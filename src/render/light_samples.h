@@ -52,6 +52,6 @@ Field light_samples(const LightSampler& lights, std::span<const LitPoint> points
 
 /// An aim at its most probable openings, as each point looks at all triangles of these; others are left to rays over
 /// the hemisphere.
-SkyAim aim_at_few(SkyAim aim, const std::vector<Opening>& openings);
+SkyAim aim_at_few(const SkyAim& aim, const std::vector<Opening>& openings);
 
 }  // namespace patchlight

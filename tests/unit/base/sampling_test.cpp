@@ -110,6 +110,16 @@ TEST(Chooser, SharesOutTheUnitIntervalInOrder) {
   expect(1, 4, 1);  // single precision rounds numbers just below 1 to 1
 }
 
+TEST(Chooser, KnowsTheProbabilityOfEachIndex) {
+  const std::vector<double> probabilities{0, 0.25, 0, 0.5, 0.25, 0};
+  const Chooser chooser(probabilities);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(chooser.probability_of(k), k < 6 ? probabilities[k] : 0) << k;
+  EXPECT_EQ(chooser.alternatives().size(), 3U);
+  EXPECT_EQ(chooser.alternatives_from(2).size(), 2U);
+  EXPECT_TRUE(chooser.alternatives_from(5).empty());
+  EXPECT_TRUE(Chooser().empty());
+}
+
 TEST(SquareToCosineHemisphere, HasItsDensity) {
   // P(cos theta > c) = 1 - c^2; and the density integrates to 1 over the hemisphere (midpoint rule in cos theta).
   const auto points = scrambled_sobol(4096, 11);
