@@ -7,6 +7,7 @@
 #include "transport/ray_transport.h"
 
 #include <Eigen/Core>
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <atomic>
@@ -19,12 +20,6 @@ namespace patchlight {
 
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Triangular factors of about a sparse matrix: small entries were dropped (ILUT, Saad 1994).
-struct IncompleteFactors {
-  Eigen::SparseMatrix<float, Eigen::RowMajor> factors;  ///< L without its diagonal of ones, and U
-  std::vector<int> order;                               ///< row k of the factors is that of the matrix's row order[k]
-};
-
 /// Patches that keep light among themselves, for example white boards 3 mm apart, where light needs hundreds of bounces
 /// to leave. Iterations over all patches hardly change the light there, and give no error bound.
 struct Pocket {
@@ -32,7 +27,8 @@ struct Pocket {
   SparseRows form_factors;          ///< F among them, numbered as they stand there
   Eigen::VectorXd bounces;          ///< (I - F rho)^-1 1, rho the highest reflectance of all bands: how often light is
                                     ///< reflected before it gets out
-  IncompleteFactors nearly_solved;  ///< of I - F rho; of few patches empty
+  /// About the factors of I - F rho, without small entries (ILUT, Saad 1994); null for few patches.
+  std::shared_ptr<const Eigen::IncompleteLUT<double>> nearly_solved;
 };
 
 /// I - F R among the patches of a pocket, in each band of R.
@@ -50,7 +46,7 @@ PocketSystem system_within(const SparseRows& form_factors, const FieldView& refl
 Field residual_within(const Pocket& pocket, const PocketSystem& system, const FieldView& right, const FieldView& x);
 
 /// x in each band: by the factors of the system, or by BiCGSTAB (van der Vorst 1992) until ||r||_2 is below `tolerance`
-/// times ||right||_2, or 200 iterations are done. Each band is solved as it would be by itself, to the bit.
+/// times ||right||_2, or 200 iterations are done.
 Field solution_within(const Pocket& pocket, const PocketSystem& system, const FieldView& right, double tolerance);
 
 /// There are few pockets: where their patches are more than an eighth of all, it is the room that is white.
