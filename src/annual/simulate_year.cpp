@@ -282,7 +282,8 @@ void check(const AnnualOptions& options) {
 void require_memory_for(const Scene& scene, const Request& request, const Year& year, const AnnualOptions& options) {
   const auto sensors = static_cast<double>(all_sensors(scene.sensors).size());
   const auto hours = static_cast<double>(year.hours.size());
-  const double divisions = 144.0 * options.sky_division * options.sky_division + 2;
+  const SkyDivisions sky(options.sky_division, scene.up, scene.north);
+  const auto divisions = static_cast<double>(sky.size());
   // Two results and three parts of them for half of the hours, coefficients of sensors, and the sky.
   const double bytes = 4 * (3.5 * sensors * hours + 2 * sensors * divisions + hours * divisions);
   if (bytes > usable_memory(request.resources))
