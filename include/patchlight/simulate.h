@@ -33,7 +33,6 @@ struct TransportFacts {
   AssemblyCounts counts;            ///< zero with rows on demand
   double bare_rays_per_second = 0;  ///< shadow rays alone between patches that face each other, on all threads; 0 when
                                     ///< few rays were traced, or with error bars
-  SamplingError error;              ///< of the sampled exchange areas, before closure
   std::string closure;              ///< which method closed the rows
 };
 

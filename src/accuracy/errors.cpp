@@ -438,18 +438,17 @@ Field mean_square(std::span<const Field> draws) {
   return squares / static_cast<double>(draws.size());
 }
 
-std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                                           const SolvedProblem& solved, const FieldView& B) {
+std::vector<Field> draw_form_factor_errors(const HalfDifferences& differences, const RowTransport& transport,
+                                           const SolvedProblem& solved) {
   const RadiosityProblem& problem = solved.problem;
+  const Field& B = solved.solution.radiosity;
   // Few bands leave out far less of the light than draws are sure of.
   const SpanningBands spanning = spanning_bands(B, problem.area, 1e-3);
   // 1. D B and D 1.
   const Field light = spanning.of(B);
   Field x(light.rows(), light.cols() + 1);
   x << light, Field::Ones(light.rows(), 1);
-  Draws drawn{transport, problem,
-              light,     random_errors({mesh, problem.area, raw.entry_errors, raw.error}, x, draws, seed),
-              {},        {}};
+  Draws drawn{transport, problem, light, random_errors(differences, x, draws, seed), {}, {}};
   // 2. With rows closed.
   if (solved.closed) {
     const Field of_ones = drawn.drawn(Eigen::all, Eigen::seqN(light.cols(), draws, light.cols() + 1));
@@ -460,13 +459,6 @@ std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly
   std::vector<Field> errors;
   for (Eigen::Index draw = 0; draw < draws; ++draw) errors.push_back(spanning.all_bands(drawn.of(draw)));
   return followed(transport, problem, std::move(errors));
-}
-
-Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
-                          const FieldView& difference) {
-  // The error of each of two independent values is their difference over sqrt(2).
-  const Field error = followed(transport, problem, difference / std::sqrt(2.0));
-  return form_factor_scale * means_around(mesh, problem.area, error);
 }
 
 std::vector<Field> draw_errors_of_lights(const PatchMesh& mesh, const RowTransport& transport,

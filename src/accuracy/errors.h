@@ -3,8 +3,8 @@
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/base/field.h"
 #include "patchlight/solve/problem.h"
-#include "patchlight/transport/assemble.h"
 #include "patchlight/transport/lost_share.h"
+#include "patchlight/transport/sampling_error.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
@@ -77,17 +77,11 @@ std::vector<Field> followed(const TransportOperator& transport, const RadiosityP
 /// The mean of the squares over draws, per patch and band.
 Field mean_square(std::span<const Field> draws);
 
-/// Random draws of the irradiance error by sampled form factors, for the radiosity `B` in W/m^2. Each draws errors of
-/// the entries (random_errors()) and propagates them: e = A^-1 D B + F R e. In a closed scene the draws are closed like
-/// the matrix, so that rows keep their sums. docs/theory/error-estimation.md. Costs a few tens of applications. `raw`
-/// has the errors of the entries.
-std::vector<Field> draw_form_factor_errors(const PatchMesh& mesh, const Assembly& raw, const RowTransport& transport,
-                                           const SolvedProblem& solved, const FieldView& B);
-
-/// The error of direct light from the lamps, computed twice with different samples. `difference`, in W/m^2, is the
-/// difference of both results.
-Field direct_light_errors(const PatchMesh& mesh, const RowTransport& transport, const RadiosityProblem& problem,
-                          const FieldView& difference);
+/// Random draws of the irradiance error by sampled form factors, W/m^2. Each draws errors of the entries
+/// (random_errors()) and propagates them: e = A^-1 D B + F R e. In a closed scene the draws are closed like the matrix,
+/// so that rows keep their sums. docs/theory/error-estimation.md. Costs a few tens of applications.
+std::vector<Field> draw_form_factor_errors(const HalfDifferences& differences, const RowTransport& transport,
+                                           const SolvedProblem& solved);
 
 /// Random draws of the irradiance error by sampled direct light of luminaires, sun and sky, each propagated, W/m^2.
 /// Errors of patches are independent. `standard_error` is that of RadiosityProblem::direct_irradiance. Costs a few tens
@@ -109,13 +103,6 @@ Field mesh_errors(const NestedMesh& mesh, const RowTransport& transport, const S
 /// shadow edges, docs/theory/edges-and-contacts.md. With 1.2, error bars in furnished rooms cover the true error as
 /// often as they should.
 inline constexpr double mesh_order = 1.2;
-
-/// The safety factor for errors of direct light from lamps, which follow from a single difference.
-inline constexpr double form_factor_scale = 1.5;
-
-/// If lamps are a larger share of the patches, the error estimate treats them as other light, because rays find them as
-/// well.
-inline constexpr double most_emitters = 0.125;
 
 /// The excess of the radiosity of the lit part of a patch that reaches into a solid over its mean: B_i d_i / (1 - d_i),
 /// where d_i is the dark share, at most 1/2. While the patch is wider than its dark part, the missing light does not

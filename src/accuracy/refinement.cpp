@@ -5,6 +5,7 @@
 #include "base/vectors.h"
 #include "solve/scattering.h"
 #include "transport/closure.h"
+#include "transport/random_errors.h"
 
 #include <algorithm>
 #include <numeric>
@@ -37,12 +38,12 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
   return effects_of_parts(raw, mesh, of.difference, weight_of_squares(solved, of.weight));
 }
 
-Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
-                                 const Eigen::VectorXd& weight) {
+Eigen::VectorXd noise_of_parents(const HalfDifferences& differences, const NestedMesh& mesh,
+                                 const SolvedProblem& solved, const Eigen::VectorXd& weight) {
   const Field B = solved.solution.radiosity;
   const Field weights = weight_of_squares(solved, weight);
   const SpanningBands spanning = spanning_bands(weights, solved.problem.area, 1e-3);
-  const Field noise = B.square() * spanning.all_bands(by_variances(errors, spanning.of(weights)));
+  const Field noise = B.square() * spanning.all_bands(by_variances(differences, spanning.of(weights)));
   return summed_by_parent(mesh, noise.rowwise().sum()).col(0).matrix();
 }
 

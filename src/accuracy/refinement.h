@@ -2,11 +2,11 @@
 
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/sampling_error.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "accuracy/errors.h"
 #include "mesh/nested_mesh.h"
-#include "transport/random_errors.h"
 
 #include <Eigen/Core>
 #include <cmath>
@@ -42,14 +42,14 @@ Field weight_of_squares(const SolvedProblem& solved, const Eigen::VectorXd& weig
 Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& mesh, const SolvedProblem& solved,
                                    const EffectsOf& of);
 
-/// The same for sampling errors: per parent the sum over its patches c and all patches i of A_i w_i^2 (rho_i sigma_ic
+/// The same for sampling errors: per parent the sum over its patches c and all patches i of A_i w_i^2 (rho_i D_ic
 /// B_c / A_i)^2, relative to
 ///
 /// B - E
 ///
 /// _A^2, all bands. A source that is cut into more patches gets more samples.
-Eigen::VectorXd noise_of_parents(const ErrorsOfEntries& errors, const NestedMesh& mesh, const SolvedProblem& solved,
-                                 const Eigen::VectorXd& weight);
+Eigen::VectorXd noise_of_parents(const HalfDifferences& differences, const NestedMesh& mesh,
+                                 const SolvedProblem& solved, const Eigen::VectorXd& weight);
 
 /// The terms of relative_bar() for a bar on the irradiance, squared, per patch, worst band.
 Eigen::VectorXd squares_of_patches(const SolvedProblem& solved, const FieldView& bar, const Eigen::VectorXd& weight);

@@ -61,6 +61,9 @@ EmitterChoice choice_by_flux(const PatchMesh& mesh, const std::vector<PatchIndex
 
 namespace {
 
+// If lamps are a larger share of the patches, they are treated as other light, because rays find them as well.
+constexpr double most_emitters = 0.125;
+
 // True when a patch is so far away, `distance` in meters, that its quarters look alike, unless something hides some of
 // them.
 bool is_far_from(const PatchCorners& corners, double distance) {

@@ -7,9 +7,9 @@ namespace patchlight::file_name {
 
 inline constexpr const char* dense = "F.npy";
 inline constexpr const char* sparse = "F.mtx";
-inline constexpr const char* dense_error = "standard_error.npy";
-inline constexpr const char* sparse_error = "standard_error.mtx";
-inline constexpr const char* entry_errors = "entry_errors.npy";
+inline constexpr const char* dense_error = "sampling_error.npy";
+inline constexpr const char* sparse_error = "sampling_error.mtx";
+inline constexpr const char* half_differences = "entry_errors.npy";
 inline constexpr const char* area = "area.npy";
 inline constexpr const char* exitance = "exitance.npy";
 inline constexpr const char* reflectance = "reflectance.npy";

@@ -102,12 +102,10 @@ Matrix form_factors_of(const Exchange& exchange) {
           }};
 }
 
-Matrix standard_errors_of(const Exchange& exchange) {
+Matrix sampling_errors_of(const Exchange& exchange) {
   return {exchange.exchange_areas.size(),
-          "standard errors of the sampled form factors from patch (row) to patch (column)",
-          [&exchange](PatchIndex i, PatchIndex j) {
-            return exchange.entry_errors.standard_error(i, j) / exchange.area[i];
-          }};
+          "random draw of the sampling errors of form factors from patch (row) to patch (column)",
+          [&exchange](PatchIndex i, PatchIndex j) { return exchange.half_differences.at(i, j) / exchange.area[i]; }};
 }
 
 void write_dense(const std::filesystem::path& file, const Matrix& matrix, const Observer& observer) {
@@ -146,25 +144,24 @@ void write(const std::filesystem::path& file, const Matrix& matrix, MatrixFormat
 }
 
 // Closure that is still to come weighs by them.
-bool keeps_entry_errors(const Exchange& exchange) {
-  return exchange.entry_errors.size() > 0 && exchange.closure.empty() &&
-         weighs_by_errors(exchange.lost, exchange.entry_errors.size());
+bool stores_half_differences(const Exchange& exchange) {
+  return exchange.half_differences.size() > 0 && exchange.closure.empty() &&
+         weighs_by_errors(exchange.lost, exchange.half_differences.size());
 }
 
 Json files_part(const FormFactorResult& result) {
   Json part;
   part[result.format == MatrixFormat::npy ? file_name::dense : file_name::sparse] =
       "form factors F_ij from patch i (row) to patch j (column); unit 1";
-  if (result.form_factors.exchange.entry_errors.size() > 0) {
+  if (result.form_factors.exchange.half_differences.size() > 0) {
     part[result.format == MatrixFormat::npy ? file_name::dense_error : file_name::sparse_error] =
-        "standard error of F_ij, before closure, where it was estimated from samples; 0 elsewhere; unit 1";
+        "random draw of the sampling error of F_ij, before closure: half of the difference of two independent halves "
+        "of its samples; unit 1";
   }
-  if (keeps_entry_errors(result.form_factors.exchange)) {
-    part[file_name::entry_errors] =
-        "how the entry of each pair i < j was found, at j (j - 1) / 2 + i: 0 without shadow rays, 1 all of them free, "
-        "2 "
-        "all blocked, k > 2 with the standard error 2^((k - 255) / 6) of S_ij in units of the root of both patches' "
-        "areas";
+  if (stores_half_differences(result.form_factors.exchange)) {
+    part[file_name::half_differences] =
+        "the same of S_ij for each pair i < j, at j (j - 1) / 2 + i, in units of the root of both patches' areas: 0, "
+        "or sign(k) 2^((|k| - 127) / 4)";
   }
   part[file_name::area] = "exposed area A_i of each patch; unit m^2. A_i F_ij = A_j F_ji";
   part[file_name::exitance] = "exitance of each patch by its material, a column per band; unit W/m^2";
@@ -219,7 +216,6 @@ std::string info_json(const FormFactorResult& result) {
                      {"seed", plan.assembly.seed},
                      {"lost_share_rays", exchange.lost.rays_per_patch}};
   json["counts"] = counts_part(exchange.counts);
-  json["sampling_error"] = json_of(exchange.error);
   json["files"] = files_part(result);
   // Names from a model may hold bytes that are not UTF-8: they are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -241,7 +237,7 @@ bool is_earlier_form_factors(const std::filesystem::path& folder) {
                                                              file_name::sparse,
                                                              file_name::dense_error,
                                                              file_name::sparse_error,
-                                                             file_name::entry_errors,
+                                                             file_name::half_differences,
                                                              file_name::area,
                                                              file_name::exitance,
                                                              file_name::reflectance,
@@ -279,11 +275,12 @@ void write_form_factors(const std::filesystem::path& folder, const FormFactorRes
   write_whole_folder(folder, is_earlier_form_factors, [&](const std::filesystem::path& in) {
     const bool dense = result.format == MatrixFormat::npy;
     write_matrix(in / (dense ? file_name::dense : file_name::sparse), exchange, result.format, observer);
-    if (exchange.entry_errors.size() > 0) {
-      write(in / (dense ? file_name::dense_error : file_name::sparse_error), standard_errors_of(exchange),
+    if (exchange.half_differences.size() > 0) {
+      write(in / (dense ? file_name::dense_error : file_name::sparse_error), sampling_errors_of(exchange),
             result.format, observer);
     }
-    if (keeps_entry_errors(exchange)) write_npy(in / file_name::entry_errors, exchange.entry_errors.codes());
+    if (stores_half_differences(exchange))
+      write_npy_numbers(in / file_name::half_differences, exchange.half_differences.codes());
     write_npy(in / file_name::area, exchange.area);
     write_materials(in, result.scene, result.form_factors.plan, result.form_factors.mesh, exchange.area);
     write_shares(in, exchange.lost);

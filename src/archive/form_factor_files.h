@@ -54,7 +54,7 @@ void write_matrix(const std::filesystem::path& file, const Exchange& exchange, M
                   const Observer& observer = {});
 
 /// Writes a folder, whole or not at all: F.npy or F.mtx, area.npy, lost_share.npy, raw_row_sum.npy, mesh.vtp,
-/// scene.json, info.json, standard_error.npy or .mtx where Exchange::entry_errors were kept, and the tables
+/// scene.json, info.json, sampling_error.npy or .mtx where Exchange::half_differences were kept, and the tables
 /// by_material.csv and by_object.csv if there are any. docs/reference/outputs/form-factor-folder.md describes them.
 /// \throws OutputError, Canceled.
 void write_form_factors(const std::filesystem::path& folder, const FormFactorResult& result,
@@ -73,7 +73,7 @@ struct FormFactorInfo {
   double metres_per_unit = 1;   ///< of the model
   PatchIndex patches = 0;
   MatrixFormat format = MatrixFormat::npy;
-  Storage storage = Storage::tiles;  ///< or rays: then neither a matrix nor samples, estimator, counts and errors of it
+  Storage storage = Storage::tiles;  ///< or rays: then neither a matrix nor samples, estimator and counts of it
   int rays = 0;                      ///< AssemblyOptions::rays
   bool is_specular = false;          ///< rays go on from clear faces or mirrors: there are stops
   std::string closure;               ///< the method that closed them; empty if none did
@@ -87,7 +87,6 @@ struct FormFactorInfo {
   int lost_share_rays = 256;
   Estimator estimator = Estimator::automatic;
   AssemblyCounts counts;
-  SamplingError error;  ///< of the sampled entries; empty where it was not stored
 };
 
 /// True when closure changed what was computed.

@@ -2,7 +2,6 @@
 
 #include "patchlight/base/geometry.h"
 #include "patchlight/light/spectrum.h"
-#include "patchlight/transport/sampling_error.h"
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -27,11 +26,5 @@ Vector vector_of(const Json& json);
 
 /// \throws std::out_of_range with the message `otherwise` if the condition is false.
 void require(bool condition, const std::string& otherwise);
-
-/// The counts of the audit, and the bounds that follow; null when no pair was sampled a second time.
-nlohmann::ordered_json json_of(const SamplingError& error);
-
-/// The same back; of null an empty one. \throws what nlohmann::json throws where a part is missing or of another shape.
-SamplingError sampling_error_of(const nlohmann::json& json);
 
 }  // namespace patchlight

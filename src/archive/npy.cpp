@@ -104,7 +104,7 @@ std::string start_of(const std::string& header) {
 
 template <class Number>
 std::string type_of() {
-  if constexpr (sizeof(Number) == 1) return "|u1";
+  if constexpr (sizeof(Number) == 1) return std::is_signed_v<Number> ? "|i1" : "|u1";
   return std::string(std::is_floating_point_v<Number> ? "<f" : "<i") + std::to_string(sizeof(Number));
 }
 
@@ -153,10 +153,12 @@ LargeArray<Number> read_npy_numbers(const std::filesystem::path& file, std::size
   return read_npy_as<LargeArray<Number>, Number>(file, count);
 }
 
+template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int8_t>);
 template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int32_t>);
 template void write_npy_numbers(const std::filesystem::path&, std::span<const std::int64_t>);
 template void write_npy_numbers(const std::filesystem::path&, std::span<const float>);
 template void write_npy_numbers(const std::filesystem::path&, std::span<const double>);
+template LargeArray<std::int8_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
 template LargeArray<std::int32_t> read_npy_numbers(const std::filesystem::path&, std::size_t);
 template void read_npy_pieces(const std::filesystem::path&, std::size_t,
                               const std::function<void(std::span<const std::int32_t>)>&);

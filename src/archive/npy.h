@@ -24,7 +24,8 @@ void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values)
 /// Writes an array of bytes of one dimension. \throws OutputError.
 void write_npy(const std::filesystem::path& file, std::span<const std::uint8_t> values);
 
-/// Writes numbers of one dimension as they are: of 32 or 64 bits, whole or floats. \throws OutputError.
+/// Writes numbers of one dimension as they are: of 32 or 64 bits, whole or floats, or signed bytes. \throws
+/// OutputError.
 template <class Number>
 void write_npy_numbers(const std::filesystem::path& file, std::span<const Number> values);
 

@@ -158,9 +158,8 @@ FormFactorInfo info_of(const nlohmann::json& json) {
   info.counts.partial_pairs = counts.at("partly_occluded_pairs").get<std::uint64_t>();
   info.counts.blocked_pairs = counts.at("blocked_pairs").get<std::uint64_t>();
   info.counts.shadow_rays = counts.at("shadow_rays").get<std::uint64_t>();
-  // Folders of earlier versions do not have these.
+  // Folders of earlier versions do not have this.
   info.estimator = estimator_of(options.value("estimator", name_of(Estimator::automatic)));
-  info.error = sampling_error_of(json.value("sampling_error", nlohmann::json()));
   return info;
 }
 
@@ -253,11 +252,11 @@ ExchangeAreas read_exchange_areas(const std::filesystem::path& file, const Eigen
   return S;
 }
 
-// The stored errors of the entries; empty if there are none.
-EntryErrors read_entry_errors(const std::filesystem::path& file, const PatchMesh& mesh) {
+// The stored differences; empty if there are none.
+HalfDifferences read_half_differences(const std::filesystem::path& file, const PatchMesh& mesh) {
   if (!std::filesystem::exists(file)) return {};
   const std::size_t size = mesh.size();
-  return {mesh.area, read_npy_bytes(file, size * (size - 1) / 2)};
+  return {mesh.area, read_npy_numbers<std::int8_t>(file, size * (size - 1) / 2)};
 }
 
 }  // namespace
@@ -317,13 +316,8 @@ Exchange read_exchange(const std::filesystem::path& folder, const FormFactorInfo
   auto [area, lost] = read_shares(folder, info);
   Eigen::VectorXd raw_row_sum = read_npy(folder / file_name::raw_row_sum, size, 1);
   ExchangeAreas S = read_exchange_areas(folder / file_name::dense, area);
-  Exchange exchange{std::move(S),
-                    std::move(area),
-                    std::move(raw_row_sum),
-                    std::move(lost),
-                    info.counts,
-                    info.error,
-                    read_entry_errors(folder / file_name::entry_errors, mesh),
+  Exchange exchange{std::move(S),    std::move(area), std::move(raw_row_sum),
+                    std::move(lost), info.counts,     read_half_differences(folder / file_name::half_differences, mesh),
                     info.closure};
   require_row_sums(folder, info, mesh, exchange);
   return exchange;

@@ -10,7 +10,6 @@ namespace patchlight::stream {
 
 enum Stream : std::uint64_t {
   // Seeds of later computations of one run
-  repeated_run = 1,
   later_meshes = 0x2d5,
 
   // Form factors by rows of rays, or by pairs

@@ -137,13 +137,6 @@ std::string worst_patches(const std::vector<WorstPatch>& worst) {
   return text.str();
 }
 
-std::string sampling(const SamplingFacts& facts) {
-  return "\nsampled form factors: standard error " + percent(facts.half_hidden, 2) +
-         " % of the unoccluded value for half hidden pairs with a form factor below 1/256; where rays agreed, 95 % are "
-         "within " +
-         percent(facts.visible.bound, 2) + " % (seen) and " + percent(facts.occluded.bound, 2) + " % (hidden)";
-}
-
 // Counts over the whole matrix.
 std::string assembly(const FormFactorFacts& facts) {
   std::ostringstream text;
@@ -157,7 +150,6 @@ std::string assembly(const FormFactorFacts& facts) {
     const double bare = facts.bare_rays_per_second;
     if (bare > 0) text << ", " << rounded(100 * rate / bare, 2) << " % of the rate of Embree alone";
   }
-  if (facts.sampling) text << sampling(*facts.sampling);
   text << "\nrow sums before closure: " << rounded(facts.raw_row_sum->min, 6) << " to "
        << rounded(facts.raw_row_sum->max, 6) << "; closure: " << facts.closure << '\n'
        << worst_patches(facts.worst);

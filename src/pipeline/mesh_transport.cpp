@@ -45,7 +45,6 @@ TransportFacts facts_of(const Exchange& exchange) {
           .row_sum = {},
           .lost = exchange.lost,
           .counts = exchange.counts,
-          .error = exchange.error,
           .closure = exchange.closure};
 }
 

@@ -11,7 +11,6 @@
 #include "pipeline/first_mesh.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/radiosity_errors.h"
-#include "pipeline/with_error_bars.h"
 #include "plan/check_request.h"
 #include "plan/choose_storage.h"
 
@@ -97,17 +96,6 @@ std::optional<MeshToSolve> next_mesh_by_rays(SolvedMesh& solved, std::span<const
   }
   if (!cuts->changes) return std::nullopt;
   return mesh_with(std::move(*cuts), solved);
-}
-
-// Lamps are not cut into more patches than can be traced twice.
-Eigen::VectorXd noise_to_cut(const SolvedMesh& solved) {
-  Eigen::VectorXd noise = solved.noise;
-  const RadiosityProblem& problem = solved.simulation.problem;
-  if (4 * share_of_emitters(problem) < most_emitters) return noise;
-  for (PatchIndex i = 0; i < solved.mesh.patches.size(); ++i) {
-    if ((problem.exitance.row(i) > 0).any()) noise[solved.mesh.parent[i]] = 0;
-  }
-  return noise;
 }
 
 std::size_t count(const std::vector<std::uint8_t>& marks) {
@@ -238,7 +226,7 @@ Search::Refinement Search::refinement(const SolvedMesh& solved, double accuracy,
   std::vector<std::uint8_t> cut =
       parents_to_cut(solved.effects, {mesh_factor(solved, step, accuracy), mesh_error_left, parents / 8, most});
   const std::vector<std::uint8_t> noisy =
-      parents_to_cut(noise_to_cut(solved), {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
+      parents_to_cut(solved.noise, {noise_factor(solved, step, accuracy), noise_left, 0, most - count(cut)});
   const bool are_few = static_cast<double>(count(noisy)) <= 0.25 * static_cast<double>(parents);
   if (count(noisy) == 0 || !(are_few || by_time || step.samples >= most_samples(plan))) return {std::move(cut), more};
   for (std::size_t k = 0; k < cut.size(); ++k) cut[k] |= noisy[k];

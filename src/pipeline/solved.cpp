@@ -27,7 +27,7 @@ namespace {
 // H = F E + H_direct; B = E + rho o H.
 Solution solve_direct_light(const RowTransport& transport, const RadiosityProblem& problem, const Observer& observer) {
   const double start = wall_seconds();
-  Field H = irradiance_by_emitters(transport, problem.exitance, Stage::solve, observer);
+  Field H = irradiance_by_emitters(transport, problem.exitance, observer);
   if (problem.direct_irradiance.size() > 0) H += problem.direct_irradiance;
   Solution solution = reflected_once(problem, std::move(H));
   const auto rows = (problem.exitance > 0).rowwise().any().count();

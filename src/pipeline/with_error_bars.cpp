@@ -7,8 +7,8 @@
 #include "accuracy/spaces.h"
 #include "accuracy/unseen_differences.h"
 #include "base/sampling.h"
-#include "base/streams.h"
 #include "base/vectors.h"
+#include "mesh/interpolate.h"
 #include "mesh/nested_mesh.h"
 #include "pipeline/local_cuts.h"
 #include "pipeline/problem_of.h"
@@ -18,9 +18,7 @@
 #include "transport/closure.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -73,56 +71,27 @@ Field radiosity_of_parents(ClosedExchangeAreas of_parents, const NestedMesh& mes
   return solve(*transport, coarse, options).radiosity;
 }
 
-// The difference of two independent values of the direct irradiance from the lamps.
-Field direct_difference(const Run& run, const Simulation& simulation, const Assembly& raw, const Field& exitance) {
-  const Eigen::VectorXd& area = simulation.problem.area;
-  AssemblyOptions again = simulation.plan.assembly;
-  again.seed = hash({simulation.plan.assembly.seed, stream::repeated_run});
-  const auto transport = on_demand_transport(simulation.mesh, run.world->between_patches(), again, area);
-  const Field second = irradiance_by_emitters(*transport, exitance, Stage::error_bars, run.observer);
-  return multiply(raw.exchange_areas, exitance).colwise() / area.array() - second;
-}
-
-// The sampling error of form factors, and equally likely draws of the part that patches have in common.
-struct SamplingErrors {
-  Field error;
-  std::vector<Field> draws;
-};
-
-// Light straight from the lamps is computed twice, unless lamps are too many.
-SamplingErrors sampling_errors(const Run& run, const Simulation& simulation, const Assembly& raw,
-                               const RowTransport& transport, const SolvedProblem& solved) {
+// Draws of the irradiance error by sampled form factors, in all bands.
+std::vector<Field> draw_sampling_errors(const Assembly& raw, const RowTransport& transport,
+                                        const SolvedProblem& solved) {
   const InNeededBands needed = in_needed_bands(solved);
-  const SolvedProblem in_bands{needed.problem, needed.solution, solved.closed};
-  const PatchMesh& mesh = simulation.mesh;
-  const Field& B = needed.solution.radiosity;
-  const Field& E = needed.problem.exitance;
-  SamplingErrors found;
-  if (share_of_emitters(needed.problem) > most_emitters) {
-    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B);
-    found.error = mean_square(found.draws).sqrt();
-  } else {
-    const Field direct =
-        direct_light_errors(mesh, transport, needed.problem, direct_difference(run, simulation, raw, E));
-    found.draws = draw_form_factor_errors(mesh, raw, transport, in_bands, B - E);
-    found.error = (direct.square() + mean_square(found.draws)).sqrt();
-  }
-  found.error = expanded(found.error, needed.bands);
-  for (Field& draw : found.draws) draw = expanded(draw, needed.bands);
-  return found;
+  std::vector<Field> draws =
+      draw_form_factor_errors(raw.half_differences, transport, {needed.problem, needed.solution, solved.closed});
+  for (Field& draw : draws) draw = expanded(draw, needed.bands);
+  return draws;
 }
 
 // The errors of the irradiance by errors of the exposed shares of patches. Where closure brings the entries of a row to
-// the sum that follows from that share, it changes them in proportion to their variances: light of other patches takes
+// the sum that follows from that share, it changes them in proportion to their squares: light of other patches takes
 // the same part of the error as the row, and only the difference of the changing patches' light from the mean counts.
-Field errors_of_exposure(const Simulation& simulation, const ErrorsOfEntries& errors, const SolvedProblem& solved) {
+Field errors_of_exposure(const Simulation& simulation, const ExchangeAreas& S, const SolvedProblem& solved) {
   const Field& irradiance = solved.solution.irradiance;
   const Eigen::ArrayXd relative = exposure_errors(simulation.transport.lost);
   if (!solved.closed || relative.isZero(0)) return irradiance.colwise() * relative;
   const Field& B = solved.solution.radiosity;
   Field x(B.rows(), B.cols() + 1);
   x << B, Field::Ones(B.rows(), 1);
-  const Field changed = by_variances(errors, x);
+  const Field changed = multiply(S, x, 2);
   const Eigen::ArrayXd sum = changed.rightCols(1).col(0);
   const Field& direct = solved.problem.direct_irradiance;
   const Field by_patches = direct.size() > 0 ? Field(irradiance - direct) : irradiance;
@@ -296,9 +265,10 @@ SolvedMesh with_bars_of_pairs(const Run& run, SolvedMesh result, MeshTransport t
 
   // 2. The errors by patches, samples and solver.
   const MeshBars of_mesh = mesh_bars(run, result, rows, solved, weight, std::move(*transport.of_parents));
-  auto [sampled, draws] = sampling_errors(run, simulation, *result.raw, rows, solved);
-  const ErrorsOfEntries errors{mesh, solved.problem.area, result.raw->entry_errors, result.raw->error};
-  Field squares = sampled.square() + errors_of_exposure(simulation, errors, solved).square();
+  std::vector<Field> draws = draw_sampling_errors(*result.raw, rows, solved);
+  // The difference of a single pair is noisy.
+  const Field sampled = means_around(mesh, solved.problem.area, mean_square(draws).sqrt());
+  Field squares = sampled.square() + errors_of_exposure(simulation, result.raw->exchange_areas, solved).square();
   if (has_point_or_daylight(run.scene)) {
     const Field& of_lights = simulation.direct_standard_error;
     const std::vector<Field> by_lights = draw_errors_of_lights(mesh, rows, solved.problem, of_lights);
@@ -322,16 +292,11 @@ SolvedMesh with_bars_of_pairs(const Run& run, SolvedMesh result, MeshTransport t
     result.light_bar = relative_bar(of_lights, simulation.problem, simulation.solution, result.interest);
   }
   result.noise_bar = relative_bar(sampled, simulation.problem, simulation.solution, result.interest);
-  result.noise = noise_of_parents(errors, result.mesh, solved, weight);
+  result.noise = noise_of_parents(result.raw->half_differences, result.mesh, solved, weight);
   return result;
 }
 
 }  // namespace
-
-double share_of_emitters(const RadiosityProblem& problem) {
-  return static_cast<double>((problem.exitance > 0).rowwise().any().count()) /
-         static_cast<double>(problem.exitance.rows());
-}
 
 QuarterLight light_at_quarters(const Run& run, const Plan& plan, const PatchMesh& mesh) {
   if (!has_point_or_daylight(run.scene) || !simulates(run.plan, Effect::interreflection)) return {};

@@ -24,7 +24,4 @@ QuarterLight light_at_quarters(const Run& run, const Plan& plan, const PatchMesh
 SolvedMesh with_error_bars(const Run& run, SolvedMesh result, MeshTransport transport,
                            std::optional<QuarterLight> light = {});
 
-/// The fraction of patches that emit.
-double share_of_emitters(const RadiosityProblem& problem);
-
 }  // namespace patchlight

@@ -243,22 +243,6 @@ std::vector<MaterialLight> material_light(const Scene& scene, const Simulation& 
   return all;
 }
 
-SamplingFacts::Unanimous unanimous_facts(const SamplingError::Unanimous& unanimous) {
-  return {unanimous.pairs(), unanimous.missed, bound_on_miss(unanimous)};
-}
-
-std::optional<SamplingFacts> sampling_facts(const SamplingError& error) {
-  if (!was_audited(error)) return {};
-  SamplingFacts facts{.half_hidden = standard_error(error, 0.5),
-                      .visible = unanimous_facts(error.visible),
-                      .occluded = unanimous_facts(error.occluded)};
-  for (std::size_t bin = 0; bin < SamplingError::bins; ++bin) {
-    const double share = (static_cast<double>(bin) + 0.5) / SamplingError::bins;
-    facts.partial[bin] = {share, with_visible_share(error, bin).pairs, standard_error(error, share)};
-  }
-  return facts;
-}
-
 std::optional<RowSumFacts> row_sum_facts(const Eigen::VectorXd& row_sum, const Simulation& simulation) {
   if (row_sum.size() == 0) return {};
   const Eigen::ArrayXd& area = simulation.problem.area.array();
@@ -302,7 +286,6 @@ FormFactorFacts form_factor_facts(const Scene& scene, const Simulation& simulati
   const double seconds = seconds_of(simulation.costs, Stage::form_factors);
   if (seconds > 0) facts.rays_per_second = static_cast<double>(transport.counts.shadow_rays) / seconds;
   facts.bare_rays_per_second = transport.bare_rays_per_second;
-  facts.sampling = sampling_facts(transport.error);
   facts.lost_share_rays = static_cast<std::uint64_t>(rays_of_patches(transport.lost, simulation.mesh.size()).sum());
   facts.ray_error = ray_error(simulation);
   facts.closure = transport.closure;

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <utility>
@@ -20,27 +19,8 @@
 namespace patchlight {
 namespace {
 
-// The interval of sampled pairs that are sampled a second time, to estimate the error of all. It gives a few thousand
-// pairs, or one in 256. Estimated pairs are fewer and vary more: at least one in 16.
-std::uint32_t audit_interval(PatchIndex size, bool estimated) {
-  const double pairs = static_cast<double>(size) * size;
-  return static_cast<std::uint32_t>(std::clamp(pairs / 16384, 4.0, estimated ? 16.0 : 256.0));
-}
-
-EntryKind kind_of(const Pair& pair) {
-  const double share = pair.visible_share();
-  return share == 0 ? EntryKind::all_hidden : share == 1 ? EntryKind::all_visible : EntryKind::estimated;
-}
-
-// The part of one row of clusters in the result.
-struct RowFacts {
-  AssemblyCounts counts;
-  SamplingError error;
-};
-
 struct Assembler {
-  const PatchMesh& mesh;
-  const AssemblyOptions& options;
+  bool keeps_errors;
   const ClusterPairs& pairs;
   const KnownEntries* known;  // none: null
 
@@ -49,9 +29,7 @@ struct Assembler {
 
   template <typename Use>
   void for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, Use use) const;
-  void count(const Pair& pair, RowFacts& facts) const;
-  void audit(const Pair& pair, double exchange_area, RowFacts& facts) const;
-  RowFacts fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const;
+  AssemblyCounts fill_row(std::size_t row, Assembly& result) const;
 };
 
 // The patches of a cluster of which not all is known.
@@ -79,45 +57,20 @@ void Assembler::for_all_facing(const ClusterPair& pair, AssemblyCounts& counts, 
   if (known_rows != 0) pairs.for_facing(pair, known_rows, new_lanes(pair.column), counted);
 }
 
-void Assembler::count(const Pair& pair, RowFacts& facts) const {
-  facts.counts.shadow_rays += pair.rays();
-  facts.counts.partial_pairs += kind_of(pair) == EntryKind::estimated ? 1 : 0;
-  facts.counts.blocked_pairs += kind_of(pair) == EntryKind::all_hidden ? 1 : 0;
+// The results of shadow rays.
+AssemblyCounts counts_of(const Pair& pair) {
+  const double share = pair.visible_share();
+  AssemblyCounts counts;
+  counts.shadow_rays = pair.rays();
+  counts.partial_pairs = share > 0 && share < 1 ? 1 : 0;
+  counts.blocked_pairs = share == 0 ? 1 : 0;
+  return counts;
 }
 
-// Samples one of many pairs again, independently: the difference estimates the error of similar pairs.
-void Assembler::audit(const Pair& pair, double exchange_area, RowFacts& facts) const {
-  const bool estimated = kind_of(pair) == EntryKind::estimated;
-  if (hash({pair.first, pair.second, options.seed}) % audit_interval(mesh.size(), estimated) != 0) return;
-  const Pair again = pairs.sampler().sampled_again(pair);
-  facts.counts.shadow_rays += again.rays();
-  // Patches nearly in one plane may have nothing to compare with.
-  if (!(again.unoccluded > 0)) return;
-  const double share = exchange_area / again.unoccluded;
-  const double difference = share - pairs.sampler().exchange_area(again) / again.unoccluded;
-  const double smaller = std::min(mesh.area[pair.first], mesh.area[pair.second]);
-  const double form_factor = again.unoccluded / smaller;
-  const std::size_t effort = effort_index(sampling_effort(form_factor));
-  const double square = form_factor * form_factor;
-  const AuditedPairs audited{1, square * difference * difference / 2, square};
-  if (estimated) {
-    const auto bin = static_cast<std::size_t>(std::min(share * SamplingError::bins, SamplingError::bins - 1.0));
-    facts.error.partial[effort][bin] += audited;
-    return;
-  }
-  const bool visible = kind_of(pair) == EntryKind::all_visible;
-  SamplingError::Unanimous& unanimous = visible ? facts.error.visible : facts.error.occluded;
-  unanimous.audited[effort] += audited;
-  unanimous.missed += kind_of(again) != kind_of(pair) ? 1 : 0;
-  const double step = std::abs(difference) * SamplingError::Unanimous::steps;
-  ++unanimous.by_share[static_cast<std::size_t>(std::min(step, SamplingError::Unanimous::steps - 1.0))];
-}
-
-// The entries of one cluster with itself and all later ones. Until the sampling error is known, the unoccluded exchange
-// areas stand in place of the standard errors.
-RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& errors) const {
-  RowFacts facts;
-  AssemblyCounts& counts = facts.counts;
+// The entries of one cluster with itself and all later ones.
+AssemblyCounts Assembler::fill_row(std::size_t row, Assembly& result) const {
+  AssemblyCounts counts;
+  ExchangeAreas& S = result.exchange_areas;
   const std::vector<PatchCluster>& clusters = pairs.clusters();
   const PairSampler& sampler = pairs.sampler();
   std::vector<Pair> sampled;
@@ -144,14 +97,12 @@ RowFacts Assembler::fill_row(std::size_t row, ExchangeAreas& S, EntryErrors& err
     });
     sampled = sampler.sampled(std::move(sampled));
     for (const Pair& pair : sampled) {
-      const float area = narrow_toward_zero(sampler.exchange_area(pair));
-      S.set(pair.first, pair.second, area);
-      count(pair, facts);
-      audit(pair, area, facts);
-      if (options.keep_errors) errors.set(pair.first, pair.second, kind_of(pair), pair.unoccluded);
+      S.set(pair.first, pair.second, narrow_toward_zero(sampler.exchange_area(pair)));
+      if (keeps_errors) result.half_differences.set(pair.first, pair.second, sampler.half_difference(pair));
+      counts += counts_of(pair);
     }
   }
-  return facts;
+  return counts;
 }
 
 // Adds the known entries.
@@ -163,8 +114,8 @@ Assembly with_known(Assembly assembly, const KnownEntries& known) {
     for (PatchIndex i = 0; i < j; ++i) {
       if (known.place[i] == no_patch) continue;
       assembly.exchange_areas.set(i, j, from.exchange_areas.at(known.place[i], known.place[j]));
-      if (assembly.entry_errors.size() > 0)
-        assembly.entry_errors.copy(i, j, from.entry_errors, {known.place[i], known.place[j]});
+      if (assembly.half_differences.size() > 0)
+        assembly.half_differences.copy(i, j, from.half_differences, {known.place[i], known.place[j]});
     }
   });
   return assembly;
@@ -174,19 +125,12 @@ Assembly with_known(Assembly assembly, const KnownEntries& known) {
 Assembly by_pair_class(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                        const KnownEntries* known, const Observer& observer) {
   const ClusterPairs pairs(mesh, occluder, options);
-  const Assembler assembler{mesh, options, pairs, known};
-  Assembly result{ExchangeAreas(mesh.size()), {}, {}, options.keep_errors ? EntryErrors(mesh.area) : EntryErrors()};
-  std::vector<RowFacts> rows(pairs.clusters().size());
-  parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
-    rows[row] = assembler.fill_row(row, result.exchange_areas, result.entry_errors);
-  });
-  if (known != nullptr) result.error = known->assembly.error;
-  for (const RowFacts& row : rows) {
-    result.counts += row.counts;
-    result.error += row.error;
-  }
-  result.entry_errors =
-      with_sampling_error(std::move(result.entry_errors), result.exchange_areas, result.error, mesh.area);
+  const Assembler assembler{options.keep_errors, pairs, known};
+  Assembly result{ExchangeAreas(mesh.size()), {}, options.keep_errors ? HalfDifferences(mesh.area) : HalfDifferences()};
+  std::vector<AssemblyCounts> rows(pairs.clusters().size());
+  parallel_for(rows.size(), Stage::form_factors, observer,
+               [&](std::size_t row) { rows[row] = assembler.fill_row(row, result); });
+  for (const AssemblyCounts& row : rows) result.counts += row;
   if (known == nullptr) return result;
   return with_known(std::move(result), *known);
 }
@@ -302,7 +246,7 @@ Assembly pair_by_pair(const PatchMesh& mesh, const Occluder& occluder, const Ass
   const std::vector<PatchShape> shapes = patch_shapes(mesh);
   const std::vector<std::uint32_t> keys = patch_keys(mesh);
   const PairLoop loop{mesh, occluder, options, estimator, shapes, keys};
-  Assembly result{ExchangeAreas(mesh.size()), {}, {}, {}};
+  Assembly result{ExchangeAreas(mesh.size()), {}, {}};
   std::vector<AssemblyCounts> rows(mesh.size());
   parallel_for(rows.size(), Stage::form_factors, observer, [&](std::size_t row) {
     rows[row] = loop.fill_row(static_cast<PatchIndex>(row), result.exchange_areas);
@@ -397,7 +341,7 @@ Assembly estimate_by_hemisphere(const PatchMesh& mesh, const Occluder& occluder,
     arrived[i] = hemisphere.arrivals(static_cast<PatchIndex>(i), points, seed);
   });
 
-  Assembly result{ExchangeAreas(mesh.size()), {}, {}, {}};
+  Assembly result{ExchangeAreas(mesh.size()), {}, {}};
   for (PatchIndex i = 0; i < mesh.size(); ++i) {
     for (const auto& [j, count] : arrived[i]) {
       const double before = static_cast<double>(result.exchange_areas.at(i, j));
@@ -475,7 +419,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const KnownEntries& known, const Observer& observer) {
   assert(options.estimator == Estimator::automatic && known.place.size() == mesh.size());
-  assert(!options.keep_errors || known.assembly.entry_errors.size() == known.assembly.exchange_areas.size());
+  assert(!options.keep_errors || known.assembly.half_differences.size() == known.assembly.exchange_areas.size());
   return by_pair_class(mesh, occluder, options, &known, observer);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/vectors.h"
+#include "transport/random_errors.h"
 #include "transport/tiles.h"
 
 #include <algorithm>
@@ -67,53 +68,32 @@ Target target_of(const Eigen::VectorXd& area, const LostShare& lost) {
   return {area.array() * (1 - share), area.array().square() * p * (1 - p) / n};
 }
 
-// The variances W_ij of the entries: the known ones, or those by the same relative error for all where `known` is null.
-// Entries that are 0 have none, as they stay 0.
+// The variances of the entries, W_ij = r_i r_j S_ij^2 with the relative errors r of the rows. The difference of a
+// single pair is too noisy for its weight, and rays that agree by chance leave none.
 class EntryWeights {
  public:
-  EntryWeights(const ExchangeAreas& S, const KnownErrors* known, const Eigen::VectorXd& area)
-      : S_(S), known_(known), area_(area) {
-    for (std::size_t bin = 0; known && bin < SamplingError::bins; ++bin)
-      estimates_audited_ = estimates_audited_ || with_visible_share(known->sampling, bin).pairs > 0;
-  }
+  EntryWeights(const ExchangeAreas& S, Eigen::VectorXd relative_errors) : S_(S), r_(std::move(relative_errors)) {}
 
-  double at(PatchIndex i, PatchIndex j, double entry) const {
-    // Quadrature and rounding leave 1e-4 of an entry that was found without shadow rays.
-    const double sigma = std::max(standard_error(i, j, entry), (known_ ? 1e-4 : entry_error) * entry);
-    return sigma * sigma;
+  double at(PatchIndex i, PatchIndex j, double entry) const { return r_[i] * r_[j] * entry * entry; }
+  Eigen::VectorXd times(const Eigen::VectorXd& x) const {
+    return r_.cwiseProduct(multiply(S_, column(r_.cwiseProduct(x)), 2).matrix());
   }
-  Eigen::VectorXd times(const Eigen::VectorXd& x) const;
 
  private:
-  double standard_error(PatchIndex i, PatchIndex j, double entry) const;
-
   const ExchangeAreas& S_;
-  const KnownErrors* known_;
-  const Eigen::VectorXd& area_;
-  bool estimates_audited_ = false;
+  Eigen::VectorXd r_;
 };
 
-// m^2; 0 where the least error stands for it.
-double EntryWeights::standard_error(PatchIndex i, PatchIndex j, double entry) const {
-  if (known_ == nullptr) return 0;
-  const EntryKind kind = known_->entries.kind(i, j);
-  if (kind == EntryKind::exact || kind == EntryKind::all_hidden) return 0;
-  if (kind == EntryKind::estimated)
-    return estimates_audited_ ? known_->entries.standard_error(i, j) : entry_error * entry;
-  const std::uint32_t effort = sampling_effort(entry / std::min(area_[i], area_[j]));
-  return entry * patchlight::standard_error(known_->sampling.visible, effort);
-}
-
-Eigen::VectorXd EntryWeights::times(const Eigen::VectorXd& x) const {
-  if (known_ == nullptr) return entry_error * entry_error * multiply(S_, column(x), 2).matrix();
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(x.size());
-  return sum_over_stripes(entry_parts(S_), stripes, zero, [&](PatchIndex part, Eigen::VectorXd& sum) {
-    for_entries(S_, part, [&](PatchIndex i, PatchIndex j, double entry) {
-      const double weight = at(i, j, entry);
-      sum[i] += weight * x[j];
-      sum[j] += weight * x[i];
-    });
-  });
+// r_i^2 = sum_j D_ij^2 / sum_j S_ij^2, or the same for all rows where the differences D do not count. Quadrature and
+// rounding leave 1e-4 of entries that were found without shadow rays.
+Eigen::VectorXd relative_errors(const ExchangeAreas& S, const LostShare& lost, const HalfDifferences& differences) {
+  // In a closed scene only the ratios of the weights count, and far too different ones take many iterations.
+  if (differences.size() != S.size() || !weighs_by_errors(lost, S.size()))
+    return Eigen::VectorXd::Constant(S.size(), entry_error);
+  const Field ones = Field::Ones(S.size(), 1);
+  const Eigen::ArrayXd squares = multiply(S, ones, 2).col(0);
+  const Eigen::ArrayXd variances = by_variances(differences, ones).col(0);
+  return (squares > 0).select(variances / squares, 0.0).sqrt().max(1e-4).matrix();
 }
 
 // Solves (W + diag(W 1) + diag(s^2)) lambda = a - S 1 by conjugate gradients with diagonal preconditioning. Rows
@@ -183,19 +163,13 @@ ClosedExchangeAreas limited(ExchangeAreas raw, const Eigen::VectorXd& area, cons
           std::string(cut_row_sums) + ": open scene, and the least change has negative entries"};
 }
 
-// The input of closure beside the entries.
-struct Wanted {
-  const Eigen::VectorXd& area;
-  const LostShare& lost;
-  const KnownErrors* known;  // none: null
-  const Observer& observer;
-};
+}  // namespace
 
-ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
-  const auto& [area, lost, known, observer] = wanted;
+ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
+                                         const HalfDifferences& differences, const Observer& observer) {
   const Target target = target_of(area, lost);
   const Eigen::VectorXd raw_sums = row_sums(raw);
-  const EntryWeights W(raw, known, area);
+  const EntryWeights W(raw, relative_errors(raw, lost, differences));
 
   // 1. The least change: S_ij += W_ij (lambda_i + lambda_j).
   const auto lambda = row_multipliers(W, target.sum - raw_sums, target, area, observer);
@@ -222,23 +196,9 @@ ClosedExchangeAreas with_row_sums(ExchangeAreas raw, const Wanted& wanted) {
   return {std::move(closed), remainder, "scaling"};
 }
 
-}  // namespace
-
 ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason) {
   const Eigen::Index n = raw.size();
   return {std::move(raw), Eigen::VectorXd::Zero(n), "none: " + reason};
-}
-
-ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
-                                         const Observer& observer) {
-  return with_row_sums(std::move(raw), {area, lost, nullptr, observer});
-}
-
-ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
-                                         const KnownErrors& known, const Observer& observer) {
-  // In a closed scene only the ratios of the weights count, and far too different ones take many iterations.
-  const bool is_known = known.entries.size() == raw.size() && !lost.closed();
-  return with_row_sums(std::move(raw), {area, lost, is_known ? &known : nullptr, observer});
 }
 
 Eigen::MatrixXd exchange_between_groups(const ExchangeAreas& S, std::span<const std::uint32_t> group_of,
@@ -325,15 +285,15 @@ Exchange trace_exchange(const PatchMesh& mesh, const Occluder& occluder, const A
 Exchange exchange_of(Assembly raw, const PatchMesh& mesh, LostShare lost) {
   const Eigen::VectorXd seen = row_sums(raw.exchange_areas);
   const Eigen::VectorXd area = exposed_area(mesh, lost, seen);
-  return {std::move(raw.exchange_areas), area, seen.cwiseQuotient(area), std::move(lost), raw.counts, raw.error,
-          std::move(raw.entry_errors),   {}};
+  return {std::move(raw.exchange_areas),   area, seen.cwiseQuotient(area), std::move(lost), raw.counts,
+          std::move(raw.half_differences), {}};
 }
 
 Exchange exchange_on_demand(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                             const Observer& observer) {
   LostShare lost = measure_lost_share(mesh, occluder, options.lost_share_rays, options.seed, observer);
   const Eigen::VectorXd area = exposed_area(mesh, lost, Eigen::VectorXd::Zero(mesh.size()));
-  return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, {}, "none: rows on demand"};
+  return {ExchangeAreas(0), area, {}, std::move(lost), {}, {}, "none: rows on demand"};
 }
 
 // Rows of more entries are known so much better than the lost share that hardly anything is moved, whatever the
@@ -352,8 +312,8 @@ ClosedExchangeAreas close_exchange(Exchange exchange, const Observer& observer) 
     if ((missing.array().abs() <= 5 * 0x1p-24 * exchange.area.array()).all())
       return {std::move(exchange.exchange_areas), missing, exchange.closure};
   }
-  const KnownErrors known{exchange.entry_errors, exchange.error};
-  return close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost, known, observer);
+  return close_exchange_areas(std::move(exchange.exchange_areas), exchange.area, exchange.lost,
+                              exchange.half_differences, observer);
 }
 
 }  // namespace patchlight

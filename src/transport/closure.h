@@ -46,24 +46,17 @@ struct ClosedExchangeAreas {
   std::string method;            ///< "least squares", "scaling", cut_row_sums or "none", with the reason
 };
 
-/// The known errors of the entries, for weighing them against a measured lost share.
-struct KnownErrors {
-  const EntryErrors& entries;  ///< of all entries, or of none
-  const SamplingError& sampling;
-};
-
 /// Corrects symmetric exchange areas so that row i sums to a_i = A_i (1 - lost_i). It makes the smallest change in the
 /// norm weighted by the variances of the entries. In a closed scene S_ij^2 replaces the variance, and the sums become
-/// exact. In an open scene the standard error of the measured lost share is weighed against those of the entries, which
-/// are nearly 0 where no shadow ray was needed. Without known errors each entry has an error of 2 % of S_ij.
+/// exact. In an open scene the standard error of the measured lost share is weighed against those of the rows, which
+/// follow from `differences` and are nearly 0 where no shadow ray was needed. Without differences each entry has an
+/// error of 2 % of S_ij.
 ///
 /// If an entry would become negative, a closed scene falls back to symmetric scaling. An open scene falls back to
 /// cutting row sums at the area plus three standard errors. The raw entries stay if no symmetric matrix with this
 /// pattern has such sums. docs/theory/closure.md. \throws Canceled.
 ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
-                                         const Observer& observer = {});
-ClosedExchangeAreas close_exchange_areas(ExchangeAreas raw, const Eigen::VectorXd& area, const LostShare& lost,
-                                         const KnownErrors& known, const Observer& observer = {});
+                                         const HalfDifferences& differences = {}, const Observer& observer = {});
 
 /// Keeps the entries without any change.
 ClosedExchangeAreas keep_exchange_areas(ExchangeAreas raw, const std::string& reason);

@@ -37,15 +37,14 @@ std::vector<PatchRange> emitter_ranges(const FieldView& exitance) {
 const Pockets* TransportOperator::pockets(const Eigen::ArrayXd&) const { return nullptr; }
 std::unique_ptr<TransportOperator> TransportOperator::adjoint(const Eigen::VectorXd&) const { return nullptr; }
 
-Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage,
-                             const Observer& observer) {
+Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, const Observer& observer) {
   if (transport.rows() == nullptr && (exitance > 0).any()) {
-    if (observer && !observer({.stage = stage})) throw Canceled();
+    if (observer && !observer({.stage = Stage::solve})) throw Canceled();
     return transport.apply(exitance);
   }
   Field H = Field::Zero(exitance.rows(), exitance.cols());
   for (const PatchRange& range : emitter_ranges(exitance)) {
-    if (observer && !observer({.stage = stage})) throw Canceled();
+    if (observer && !observer({.stage = Stage::solve})) throw Canceled();
     H += transport.rows()->shoot(range, exitance.middleRows(range.begin, range.end - range.begin));
   }
   return H;

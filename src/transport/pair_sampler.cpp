@@ -69,17 +69,20 @@ double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint6
 
 namespace {
 
-// A packet is filled by pairs that take 2, 4, 8 or 16 of its rays each.
-std::uint32_t even(int count) { return (static_cast<std::uint32_t>(std::max(count, 1)) + 1) / 2 * 2; }
+// Both halves have equally many samples.
+std::uint32_t half_of(int samples) { return (static_cast<std::uint32_t>(std::max(samples, 1)) + 1) / 2; }
 
 // `let_through` is the share of the light along the ray that arrives.
-void add(Pair& pair, float weight, float let_through) {
+void add(PairHalf& half, float weight, float let_through) {
   const bool idle = !(weight > 0);
-  pair.weight += weight;
-  pair.seen_weight += weight * let_through;
-  (idle ? pair.idle_seen : pair.seen) += let_through;
-  ++(idle ? pair.idle_rays : pair.weighted_rays);
+  half.weight += weight;
+  half.seen_weight += weight * let_through;
+  (idle ? half.idle_seen : half.seen) += let_through;
+  ++(idle ? half.idle_rays : half.weighted_rays);
 }
+
+// Half k of a series of pairs, where the two of a pair follow each other.
+PairHalf& half_at(std::span<Pair> pairs, std::size_t k) { return pairs[k / 2].halves[k % 2]; }
 
 // Calls use(group) for the pairs that are sampled in one way and have had equally many rays.
 template <typename Use>
@@ -116,9 +119,21 @@ PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, con
   return {x, y, smaller.area * larger.area * geometry_term(x, smaller.normal, y, larger.normal), 0};
 }
 
+PairHalf& PairHalf::operator+=(const PairHalf& other) {
+  weight += other.weight;
+  seen_weight += other.seen_weight;
+  seen += other.seen;
+  idle_seen += other.idle_seen;
+  weighted_rays += other.weighted_rays;
+  idle_rays += other.idle_rays;
+  return *this;
+}
+
 double Pair::visible_share() const {
-  const bool idle = weighted_rays == 0;
-  return static_cast<double>(idle ? idle_seen : seen) / std::max(1U, idle ? idle_rays : weighted_rays);
+  PairHalf all = halves[0];
+  all += halves[1];
+  const bool idle = all.weighted_rays == 0;
+  return static_cast<double>(idle ? all.idle_seen : all.seen) / std::max(1U, idle ? all.idle_rays : all.weighted_rays);
 }
 
 PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& shapes, const Occluder& occluder,
@@ -127,7 +142,7 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       shapes_(shapes),
       occluder_(occluder),
       far_rule_(options.short_cuts.far ? FarRule::coarse : FarRule::fine),
-      samples_(even(options.samples)),
+      samples_(half_of(options.samples)),
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),
@@ -149,29 +164,32 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
   if (adjacent && sizes_differ ? second < first : keys_[j] < keys_[i]) std::swap(i, j);
   return {.first = i,
           .second = j,
-          .set = table_.of_pair(keys_[i], keys_[j]),
+          .halves = {PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 0)},
+                     PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 2)}},
           .unoccluded = unoccluded,
           .is_adjacent = adjacent};
 }
 
-// Traces samples [begin, end) of every pair. A packet holds 2, 4, 8 or 16 rays of each of its pairs, so that its rays
-// are coherent.
+// Traces samples [begin, end) of both halves of every pair. A packet holds 1, 2, 4, 8 or 16 rays of each of its halves,
+// so that its rays are coherent.
 void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   PairSamples next;
   for (std::uint32_t k = begin; k < end;) {
     std::uint32_t step = 16;
-    while (step > 2 && (k % step != 0 || end - k < step)) step /= 2;
+    while (step > 1 && (k % step != 0 || end - k < step)) step /= 2;
     const std::size_t at_once = ShadowPacket::size / step;
-    for (std::size_t p = 0; p < pairs.size(); p += at_once) {
+    const std::size_t halves = 2 * pairs.size();
+    for (std::size_t h = 0; h < halves; h += at_once) {
       for (std::size_t n = 0; n < at_once; ++n) {
-        // Lanes beyond the last pair repeat it.
-        const Pair& pair = pairs[std::min(p + n, pairs.size() - 1)];
+        // Lanes beyond the last half repeat it.
+        const std::size_t at = std::min(h + n, halves - 1);
+        const Pair& pair = pairs[at / 2];
         add_samples(next, static_cast<int>(n * step), static_cast<int>(step), patches_[pair.first],
-                    patches_[pair.second], pair.set, k, scale_);
+                    patches_[pair.second], half_at(pairs, at).set, k, scale_);
       }
       const auto arriving = occluder_.transmittance(next.rays);
-      for (std::size_t lane = 0; lane < ShadowPacket::size && p + lane / step < pairs.size(); ++lane) {
-        add(pairs[p + lane / step], next.weight[lane], arriving[lane]);
+      for (std::size_t lane = 0; lane < ShadowPacket::size && h + lane / step < halves; ++lane) {
+        add(half_at(pairs, h + lane / step), next.weight[lane], arriving[lane]);
       }
     }
     k += step;
@@ -180,21 +198,24 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
 
 // The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
 void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
-  const std::size_t count = end - begin;
-  if (pairs.size() > 1 && pairs.size() * count > rays_at_once) {
+  const std::size_t count = end - begin;  // of each half
+  const std::size_t halves = 2 * pairs.size();
+  if (pairs.size() > 1 && halves * count > rays_at_once) {
     trace_adjacent(pairs.first(pairs.size() / 2), begin, end);
     return trace_adjacent(pairs.subspan(pairs.size() / 2), begin, end);
   }
   std::vector<Segment> segments;
   std::vector<float> weights;
-  segments.reserve(pairs.size() * count);
-  weights.reserve(pairs.size() * count);
-  for (const Pair& pair : pairs) {
+  segments.reserve(halves * count);
+  weights.reserve(halves * count);
+  for (std::size_t h = 0; h < halves; ++h) {
+    const Pair& pair = pairs[h / 2];
+    const SampleSet& set = half_at(pairs, h).set;
     const PatchShape& a = shapes_[pair.first];
     const PatchShape& b = shapes_[pair.second];
     for (std::size_t k = begin; k < end; ++k) {
       const auto at = [&](std::size_t d) {
-        return static_cast<double>(shifted(pair.set.net[d * pair.set.stride + k], pair.set.shift[d]));
+        return static_cast<double>(shifted(set.net[d * set.stride + k], set.shift[d]));
       };
       const Point x = square_to_quad(a.corners.points, at(0), at(1));
       const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, at(2), at(3));
@@ -204,7 +225,7 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
     }
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) add(pairs[k / count], weights[k], arriving[k]);
+  for (std::size_t k = 0; k < segments.size(); ++k) add(half_at(pairs, k / count), weights[k], arriving[k]);
 }
 
 // Samples [begin, end) of pairs that are sampled in one way; none when there are that many already.
@@ -217,10 +238,11 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
 // Uses the form factor from the smaller patch, or its estimate by the weights of the first samples. If none of these
 // has a weight, because the patches see each other in a sliver, the effort is the largest.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
-  if (pair.weighted_rays == 0) return most_effort;
+  const auto& [one, other] = pair.halves;
+  if (one.weighted_rays + other.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
   const double second = shapes_[pair.second].area;
-  const double mean_weight = static_cast<double>(pair.weight) / pair.rays();
+  const double mean_weight = static_cast<double>(one.weight + other.weight) / pair.rays();
   const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded) : first * second * mean_weight;
   return sampling_effort(unoccluded / std::min(first, second));
 }
@@ -244,34 +266,38 @@ std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
   return pairs;
 }
 
-Pair PairSampler::sampled_again(const Pair& pair) const {
-  Pair again{.first = pair.first,
-             .second = pair.second,
-             .set = table_.of_pair(keys_[pair.first], keys_[pair.second], 1),
-             .unoccluded = pair.unoccluded,
-             .effort = pair.effort,
-             .is_adjacent = pair.is_adjacent};
-  trace({&again, 1}, 0, pair.effort * samples_);
-  if (again.unoccluded < 0) again.unoccluded = exact(pair.first, pair.second);
-  return again;
-}
-
-double PairSampler::exchange_area(const Pair& pair) const {
+// docs/theory/occluded-form-factors.md, formula (5). Single halves may leave the range from 0 to U.
+std::array<double, 2> PairSampler::estimates(const Pair& pair) const {
   const double share = pair.visible_share();
-  if (share == 0) return 0;
+  if (share == 0) return {0, 0};
   const double U = pair.unoccluded;
-  const double n = pair.rays();
-  const double m = pair.weighted_rays;
-  if (share == 1 || m < 2) return share * U;
+  const auto& [one, other] = pair.halves;
+  const double m = one.weighted_rays + other.weighted_rays;
+  if (share == 1 || m < 2) return {share * U, share * U};
   // U minus the mean weight has the expectation 0: a control variate. It is multiplied by the visible share of the
   // other samples, from which it is independent, and removes the scatter of the weights. With the same samples it would
   // add a bias.
   const auto nonspecular_of_both = static_cast<double>(nonspecular_fraction(pair.first, pair.second));
   const double areas = nonspecular_of_both * shapes_[pair.first].area * shapes_[pair.second].area;
-  const double free = areas * pair.seen_weight;
-  const double by_others = (pair.seen * ((m - 1) * U - areas * pair.weight) + free) / (m - 1);
+  const double seen = one.seen + other.seen;
+  const auto of_half = [&](const PairHalf& half) {
+    const double free = areas * half.seen_weight;
+    const double by_others = (seen * (half.weighted_rays * U - areas * half.weight) - half.seen * U + free) / (m - 1);
+    return (free + by_others + half.idle_rays * share * U) / half.rays();
+  };
+  return {of_half(one), of_half(other)};
+}
+
+double PairSampler::exchange_area(const Pair& pair) const {
+  const auto [one, other] = estimates(pair);
   // A clear patch may scatter or absorb all light at some angle.
-  return std::clamp((free + by_others + (n - m) * share * U) / n, 0.0, U / nonspecular_of_both);
+  const auto nonspecular_of_both = static_cast<double>(nonspecular_fraction(pair.first, pair.second));
+  return std::clamp(0.5 * (one + other), 0.0, std::max(0.0, pair.unoccluded / nonspecular_of_both));
+}
+
+double PairSampler::half_difference(const Pair& pair) const {
+  const auto [one, other] = estimates(pair);
+  return 0.5 * (one - other);
 }
 
 namespace {

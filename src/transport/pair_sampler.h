@@ -37,22 +37,30 @@ struct PairSample {
 /// A sample with uniformly distributed points on both patches: weight A_i A_j G.
 PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at);
 
-/// A pair of facing patches with the results of its shadow rays so far.
-struct Pair {
-  PatchIndex first = 0;  ///< rays are sampled from here
-  PatchIndex second = 0;
+/// Half of the shadow rays of a pair, with their results so far.
+struct PairHalf {
   SampleSet set;
-  float unoccluded = 0;             ///< exchange area without occluders, m^2; -1 when not yet computed
   float weight = 0;                 ///< summed weights of its samples: geometry terms, 1/m^2
   float seen_weight = 0;            ///< the same, each times the transmittance of its shadow ray
   float seen = 0;                   ///< summed transmittances of samples with a weight
   float idle_seen = 0;              ///< of samples without a weight: one end lies behind the other patch
   std::uint32_t weighted_rays = 0;  ///< of samples with a weight
   std::uint32_t idle_rays = 0;      ///< of samples without
-  std::uint32_t effort = 1;         ///< multiple of the usual number of samples
-  bool is_adjacent = false;         ///< sampled by solid angle
 
   std::uint32_t rays() const { return weighted_rays + idle_rays; }
+  PairHalf& operator+=(const PairHalf& other);  ///< adds the results
+};
+
+/// A pair of facing patches. Two independent halves of its samples estimate its exchange area twice.
+struct Pair {
+  PatchIndex first = 0;  ///< rays are sampled from here
+  PatchIndex second = 0;
+  std::array<PairHalf, 2> halves;
+  float unoccluded = 0;      ///< exchange area without occluders, m^2; -1 when not yet computed
+  std::uint32_t effort = 1;  ///< multiple of the usual number of samples
+  bool is_adjacent = false;  ///< sampled by solid angle
+
+  std::uint32_t rays() const { return halves[0].rays() + halves[1].rays(); }
   /// The mean transmittance of its rays; if none has a weight, all count alike.
   double visible_share() const;
 };
@@ -77,13 +85,14 @@ class PairSampler {
   /// the estimate has no bias. The order of the pairs changes.
   std::vector<Pair> sampled(std::vector<Pair> pairs) const;
 
-  /// Samples one pair again, independent of the samples before.
-  Pair sampled_again(const Pair& pair) const;
-
-  /// The estimate from the pair's rays, m^2: docs/theory/occluded-form-factors.md, formula (5).
+  /// The mean of the estimates of both halves, m^2.
   double exchange_area(const Pair& pair) const;
 
+  /// Half of the difference of both estimates, m^2.
+  double half_difference(const Pair& pair) const;
+
  private:
+  std::array<double, 2> estimates(const Pair& pair) const;
   void trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   void trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
   void trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const;
@@ -93,7 +102,7 @@ class PairSampler {
   const std::vector<PatchShape>& shapes_;
   const Occluder& occluder_;
   FarRule far_rule_;
-  std::uint32_t samples_;
+  std::uint32_t samples_;  // the usual number in each half
   double scale_;
   std::vector<std::uint32_t> keys_;
   std::vector<SampledPatch> patches_;

@@ -75,26 +75,6 @@ struct RoomLight {
   std::array<SurfaceLight, 3> surfaces{};  ///< at the place of each RoomSurface
 };
 
-/// How far the sampled form factors are off, as shares of the unoccluded form factor.
-struct SamplingFacts {
-  /// Pairs whose rays disagreed, with about the same visible share.
-  struct Partial {
-    double visible_share = 0;
-    std::uint64_t sampled_again = 0;
-    double standard_error = 0;  ///< of a pair that takes the usual number of samples
-  };
-  /// Pairs whose rays agreed.
-  struct Unanimous {
-    std::uint64_t sampled_again = 0;
-    std::uint64_t missed = 0;  ///< of these, those where not all of the second rays agreed with the first
-    double bound = 1;          ///< bound_on_miss()
-  };
-  std::array<Partial, SamplingError::bins> partial{};  ///< by their visible share
-  double half_hidden = 0;                              ///< the standard error of pairs that see half of each other
-  Unanimous visible;
-  Unanimous occluded;
-};
-
 /// The sums of the rows of form factors.
 struct RowSumFacts {
   double min = 0;
@@ -121,7 +101,6 @@ struct FormFactorFacts {
   std::optional<AssemblyCounts> counts;    ///< nothing with rows on demand
   std::optional<double> rays_per_second;   ///< shadow rays over the seconds of the form factors, where these took any
   double bare_rays_per_second = 0;         ///< the rate without anything else; 0 where not known
-  std::optional<SamplingFacts> sampling;   ///< nothing when no pair was sampled again
   std::uint64_t lost_share_rays = 0;       ///< in all
   std::optional<double> ray_error;         ///< Simulation::ray_standard_error over the reflected light; of rows of rays
   std::string closure;                     ///< the method that has closed the rows

@@ -55,7 +55,7 @@ struct AssemblyOptions {
                     ///< multiplies it by sampling_effort(); powers of two fill packets of rays best. The other
                     ///< estimators use exactly this number per pair, Estimator::hemisphere per patch
   std::uint64_t seed = 1;
-  bool keep_errors = false;  ///< fill Assembly::entry_errors; the automatic estimator only
+  bool keep_errors = false;  ///< fill Assembly::half_differences; the automatic estimator only
   Estimator estimator = Estimator::automatic;
   ShortCuts short_cuts = {};             ///< of the automatic estimator
   bool close = true;                     ///< correct the form factors so that each row sums to the visible share
@@ -84,12 +84,11 @@ struct AssemblyCounts {
   AssemblyCounts& operator+=(const AssemblyCounts& other);
 };
 
-/// Exchange areas as computed, before closure, and their known errors.
+/// Exchange areas as computed, before closure, and their sampling errors.
 struct Assembly {
   ExchangeAreas exchange_areas;
   AssemblyCounts counts;
-  SamplingError error;
-  EntryErrors entry_errors;  ///< when asked for
+  HalfDifferences half_differences;  ///< when asked for
 };
 
 /// Known entries of some pairs, from another mesh of the same scene with the same options.
@@ -105,8 +104,7 @@ Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder
                                  const Observer& observer = {});
 
 /// The same with the automatic estimator, but entries between two known patches are copied. The result equals a full
-/// assembly up to rounding, as clusters differ. Standard errors of known pairs stay; the sampling error is pooled over
-/// both meshes. Cost and counts include the other pairs only.
+/// assembly up to rounding, as clusters differ. Cost and counts include the other pairs only.
 Assembly assemble_exchange_areas(const PatchMesh& mesh, const Occluder& occluder, const AssemblyOptions& options,
                                  const KnownEntries& known, const Observer& observer = {});
 

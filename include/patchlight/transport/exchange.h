@@ -22,9 +22,8 @@ struct Exchange {
   Eigen::VectorXd raw_row_sum;  ///< sum_j F_ij before closure
   LostShare lost;
   AssemblyCounts counts;
-  SamplingError error;       ///< of the sampled entries, before closure
-  EntryErrors entry_errors;  ///< of the exchange areas before closure, if requested or if closure weighs by them
-  std::string closure;       ///< the method that closed the exchange areas; empty before closure
+  HalfDifferences half_differences;  ///< before closure, if requested or if closure weighs by them
+  std::string closure;               ///< the method that closed the exchange areas; empty before closure
 };
 
 /// The exchange for rows on demand: exchange areas have no patches, and row sums are empty. Areas follow from the lost

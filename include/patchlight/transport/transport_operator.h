@@ -34,7 +34,7 @@ class TransportOperator {
 
 /// F E, W/m^2, by the rows of emitting patches alone, or by one application if the transport has no rows. \throws
 /// Canceled.
-Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance, Stage stage = Stage::solve,
+Field irradiance_by_emitters(const TransportOperator& transport, const FieldView& exitance,
                              const Observer& observer = {});
 
 /// A block of patches during a sweep: its current radiosities, the irradiance by the current radiosities of all patches

@@ -144,25 +144,6 @@ Json request_part(const Request& request) {
   return part;
 }
 
-Json unanimous_part(const SamplingFacts::Unanimous& unanimous) {
-  return {{"sampled_again", unanimous.sampled_again}, {"missed", unanimous.missed}, {"bound", unanimous.bound}};
-}
-
-// Null where no pair was sampled again, as when rays decide none.
-Json sampling_part(const std::optional<SamplingFacts>& sampling) {
-  if (!sampling) return nullptr;
-  Json part;
-  part["by_visible_share"] = Json::array();
-  for (const SamplingFacts::Partial& partial : sampling->partial) {
-    part["by_visible_share"].push_back({{"visible_share", partial.visible_share},
-                                        {"sampled_again", partial.sampled_again},
-                                        {"standard_error", partial.standard_error}});
-  }
-  part["rays_all_free"] = unanimous_part(sampling->visible);
-  part["rays_all_blocked"] = unanimous_part(sampling->occluded);
-  return part;
-}
-
 Json plan_part(const Report& report) {
   const Plan& plan = report.plan;
   Json part;
@@ -251,7 +232,6 @@ Json transport_part(const FormFactorFacts& facts) {
   part["bare_shadow_rays_per_second"] = facts.counts ? Json(facts.bare_rays_per_second) : Json();
   part["hidden_pairs"] = counted(&AssemblyCounts::hidden_pairs);
   part["free_pairs"] = counted(&AssemblyCounts::free_pairs);
-  part["sampling_error"] = sampling_part(facts.sampling);
   part["lost_share_rays"] = facts.lost_share_rays;
   part["ray_error"] = facts.ray_error ? Json(*facts.ray_error) : Json();
   part["closure"] = facts.closure;

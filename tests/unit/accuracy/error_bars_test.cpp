@@ -8,6 +8,7 @@
 #include "mesh/nested_mesh.h"
 #include "support/scenes.h"
 #include "transport/closure.h"
+#include "transport/random_errors.h"
 #include "visibility/occluder.h"
 
 #include <cmath>
@@ -73,19 +74,6 @@ TEST(RelativeBar, IsInfiniteWhereNoBoundIsKnown) {
   EXPECT_TRUE(std::isinf(relative_bar(bar, problem, solution, Eigen::Vector2d(1, 1))));
 }
 
-// The difference of two independent values with standard deviation sigma has sqrt(2) sigma. There is no other error
-// where nothing reflects.
-TEST(DirectLightErrors, AreARootOfOneHalfOfTheDifference) {
-  const Scene scene = test::cube_room(0, 1);
-  const Simulation simulation = simulate(scene, with_bars(100));
-  const Eigen::Index n = simulation.problem.area.size();
-  const auto transport =
-      dense_transport(keep_exchange_areas(ExchangeAreas(simulation.mesh.size()), ""), simulation.problem.area);
-  const Field difference = Field::Constant(n, simulation.problem.exitance.cols(), -0.3);
-  const Field bars = direct_light_errors(simulation.mesh, *transport, simulation.problem, difference);
-  EXPECT_LT((bars - form_factor_scale * 0.3 / std::sqrt(2.0)).abs().maxCoeff(), 1e-15);
-}
-
 // Two patches send light to a black third one. F = S for patches of 1 m^2. An error of one patch arrives as rho F times
 // the error. The signs of the common errors 0.3 and 0.1 are random: their root mean square lies between the difference
 // and the sum.
@@ -115,8 +103,8 @@ TEST(ErrorsOfLights, AreFollowedToWhatTheLitPatchesLight) {
   EXPECT_LT(of_both(2), 0.4);
 }
 
-// Theorem: the sources' shares of the noise add up to the noise that all receivers expect. With independent errors
-// sigma_ij, sum_i w_i E (D B)_i^2 = sum_i w_i sum_j sigma_ij^2 B_j^2, and sigma is symmetric.
+// Theorem: the sources' shares of the noise add up to the noise that all receivers expect. With random signs of D_ij,
+// sum_i w_i E (D B)_i^2 = sum_i w_i sum_j D_ij^2 B_j^2, and D is symmetric.
 TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
   const Scene scene = test::furnished_room(0.5);
   const Simulation simulation = simulate(scene, with_bars(300));
@@ -126,12 +114,11 @@ TEST(NoiseOfParents, SumsUpToWhatReceiversExpect) {
   mesh.parent.assign(mesh.first_patch.begin(), mesh.first_patch.end() - 1);
   const Assembly raw = assemble_exchange_areas(simulation.mesh, Occluder(scene), {.keep_errors = true});
   const RadiosityProblem& problem = simulation.problem;
-  const ErrorsOfEntries errors{simulation.mesh, problem.area, raw.entry_errors, raw.error};
   const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(problem.area.size(), 0, 1);
-  const Eigen::VectorXd noise = noise_of_parents(errors, mesh, {problem, simulation.solution}, weight);
+  const Eigen::VectorXd noise = noise_of_parents(raw.half_differences, mesh, {problem, simulation.solution}, weight);
 
   const Field& B = simulation.solution.radiosity;
-  const Field expected = by_variances(errors, B.square());
+  const Field expected = by_variances(raw.half_differences, B.square());
   const Eigen::ArrayXd reflected = area_norm(B - problem.exitance, problem.area).square();
   const Eigen::ArrayXd w = weight.array().square() / problem.area.array();
   double sum = 0;

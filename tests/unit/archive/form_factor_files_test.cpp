@@ -68,11 +68,6 @@ TEST_P(StoredFormFactors, GiveTheSameSolution) {
     EXPECT_EQ(stored.transport.raw_row_sum, fresh.transport.raw_row_sum);
     EXPECT_EQ(stored.transport.lost.escaped, fresh.transport.lost.escaped);
     EXPECT_EQ(stored.transport.counts.shadow_rays, fresh.transport.counts.shadow_rays);
-    EXPECT_TRUE(was_audited(stored.transport.error));
-    EXPECT_EQ(stored.transport.error.partial, fresh.transport.error.partial);
-    EXPECT_EQ(stored.transport.error.visible.missed, fresh.transport.error.visible.missed);
-    EXPECT_EQ(stored.transport.error.visible.by_share, fresh.transport.error.visible.by_share);
-    EXPECT_EQ(bound_on_miss(stored.transport.error.occluded), bound_on_miss(fresh.transport.error.occluded));
   }
 }
 
@@ -132,23 +127,21 @@ TEST(StoredFormFactors, KnowHowTheyWereMade) {
   EXPECT_EQ(info.closure, "least squares");
 }
 
-// A folder without these keys, as older versions wrote it.
-TEST(StoredFormFactors, WithoutTheirSamplingErrorAreRead) {
+// A folder without this key, as older versions wrote it.
+TEST(StoredFormFactors, WithoutTheirEstimatorAreRead) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
   const Scene scene = closed_room();
   const FormFactors found = find_form_factors(scene, coarse());
   write_form_factors(place, {scene, found, {}, "a command"});
   nlohmann::json info = nlohmann::json::parse(content_of(place / "info.json"));
-  info.erase("sampling_error");
   info["options"].erase("estimator");
   put(place / "info.json", info.dump());
   const Exchange exchange = read_exchange(place, read_form_factor_info(place), found.mesh);
-  EXPECT_FALSE(was_audited(exchange.error));
   EXPECT_EQ(exchange.counts.shadow_rays, found.exchange.counts.shadow_rays);
 }
 
-TEST(StoredFormFactors, HaveTheStandardErrorsThatWereKept) {
+TEST(StoredFormFactors, HaveTheSamplingErrorsThatWereKept) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
   const Scene scene = closed_room();
@@ -157,20 +150,21 @@ TEST(StoredFormFactors, HaveTheStandardErrorsThatWereKept) {
   const FormFactors found = find_form_factors(scene, request);
   write_form_factors(place, {scene, found, {}, "a command"});
   const PatchIndex size = found.mesh.size();
-  const Eigen::MatrixXd errors = read_npy(place / "standard_error.npy", size, size);
-  int estimated = 0;
+  const Eigen::MatrixXd errors = read_npy(place / "sampling_error.npy", size, size);
+  int differing = 0;
   for (PatchIndex i = 0; i < size; ++i) {
     for (PatchIndex j = 0; j < size; ++j) {
-      const double expected = found.exchange.entry_errors.standard_error(i, j) / found.exchange.area[i];
+      const double expected = found.exchange.half_differences.at(i, j) / found.exchange.area[i];
       EXPECT_EQ(errors(i, j), static_cast<double>(static_cast<float>(expected)));
-      estimated += errors(i, j) > 0 ? 1 : 0;
+      differing += errors(i, j) != 0 ? 1 : 0;
     }
   }
-  EXPECT_EQ(estimated, 2 * static_cast<int>(found.exchange.counts.partial_pairs));
-  EXPECT_GT(estimated, 0);
+  // Halves differ only where rays of a pair disagree.
+  EXPECT_LE(differing, 2 * static_cast<int>(found.exchange.counts.partial_pairs));
+  EXPECT_GT(differing, 0);
   // These belong to an earlier result.
   write_form_factors(place, {scene, find_form_factors(scene, coarse()), {}, "a command"});
-  EXPECT_FALSE(fs::exists(place / "standard_error.npy"));
+  EXPECT_FALSE(fs::exists(place / "sampling_error.npy"));
 }
 
 // Stored factors can be read: with so few samples that rows are far from their sums, by every estimator, raw and
@@ -214,12 +208,12 @@ TEST(StoredFormFactors, BesideARowThatWasCutAreTaken) {
   EXPECT_LT(row_sums(closed.exchange_areas)[0], 0.2 * area[0]);
   exchange.exchange_areas = closed.exchange_areas;
   exchange.closure = closed.method;
-  exchange.entry_errors = {};
+  exchange.half_differences = {};
   write_form_factors(place, {scene, found, {}, "a command"});
   EXPECT_NO_THROW(read_exchange(place, read_form_factor_info(place), found.mesh));
 }
 
-// The bytes may have any value, but there must be one for each pair.
+// The bytes may have any value, but there must be a signed one for each pair.
 TEST(StoredFormFactors, WithErrorsOfOtherPairsAreRefused) {
   const TemporaryFolder folder;
   const fs::path place = folder.path() / "room.ff";
@@ -233,9 +227,13 @@ TEST(StoredFormFactors, WithErrorsOfOtherPairsAreRefused) {
     put(place / "entry_errors.npy", damaged);
     EXPECT_THROW(read_exchange(place, info, found.mesh), InputError);
   }
-  // Folders of earlier versions have none.
+  // Earlier versions had bytes without a sign, of another meaning.
+  std::string unsigned_bytes = content;
+  unsigned_bytes.replace(content.find("|i1"), 3, "|u1");
+  put(place / "entry_errors.npy", unsigned_bytes);
+  EXPECT_THROW(read_exchange(place, info, found.mesh), InputError);
   fs::remove(place / "entry_errors.npy");
-  EXPECT_EQ(read_exchange(place, info, found.mesh).entry_errors.size(), 0U);
+  EXPECT_EQ(read_exchange(place, info, found.mesh).half_differences.size(), 0U);
 }
 
 TEST(StoredFormFactors, OfAnotherGeometryAreRefused) {
