@@ -165,7 +165,7 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
   return {.first = i,
           .second = j,
           .halves = {PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 0)},
-                     PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 2)}},
+                     PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 6)}},
           .unoccluded = unoccluded,
           .is_adjacent = adjacent};
 }
