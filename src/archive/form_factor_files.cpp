@@ -155,7 +155,7 @@ Json files_part(const FormFactorResult& result) {
       "form factors F_ij from patch i (row) to patch j (column); unit 1";
   if (result.form_factors.exchange.half_differences.size() > 0) {
     part[result.format == MatrixFormat::npy ? file_name::dense_error : file_name::sparse_error] =
-        "random draw of the sampling error of F_ij, before closure: half of the difference of two independent halves "
+        "random draw of the sampling error of F_ij, before closure: half of the difference of two halves "
         "of its samples; unit 1";
   }
   if (stores_half_differences(result.form_factors.exchange)) {

@@ -155,8 +155,6 @@ void add_samples(PairSamples& samples, int lane, int count, const SampledPatch& 
   const auto factor = static_cast<float>(scale * scale / std::numbers::pi);
   const std::ptrdiff_t at = lane;
   switch (count) {
-    case 1:
-      return fill<1>(samples, at, from, to, set, first, factor);
     case 2:
       return fill<2>(samples, at, from, to, set, first, factor);
     case 4:

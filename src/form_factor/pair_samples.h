@@ -66,7 +66,7 @@ struct PairSamples {
 };
 
 /// Fills `count` lanes, starting at `lane`, with the samples `first` to first + count - 1 of a pair of patches. count
-/// is 1, 2, 4, 8 or 16. Weights are geometry terms in 1/m^2.
+/// is 2, 4, 8 or 16. Weights are geometry terms in 1/m^2.
 void add_samples(PairSamples& samples, int lane, int count, const SampledPatch& from, const SampledPatch& to,
                  const SampleSet& set, std::uint32_t first, double scale);
 

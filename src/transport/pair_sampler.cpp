@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace patchlight {
@@ -70,7 +69,7 @@ double bare_ray_rate(const PatchMesh& mesh, const Occluder& occluder, std::uint6
 namespace {
 
 // Both halves have equally many samples.
-std::uint32_t half_of(int samples) { return (static_cast<std::uint32_t>(std::max(samples, 1)) + 1) / 2; }
+std::uint32_t even(int count) { return (static_cast<std::uint32_t>(std::max(count, 1)) + 1) / 2 * 2; }
 
 // `let_through` is the share of the light along the ray that arrives.
 void add(PairHalf& half, float weight, float let_through) {
@@ -81,13 +80,19 @@ void add(PairHalf& half, float weight, float let_through) {
   ++(idle ? half.idle_rays : half.weighted_rays);
 }
 
-// Half k of a series of pairs, where the two of a pair follow each other.
-PairHalf& half_at(std::span<Pair> pairs, std::size_t k) { return pairs[k / 2].halves[k % 2]; }
+// The half of sample k of `count`.
+PairHalf& half_of(Pair& pair, std::size_t k, std::size_t count) { return pair.halves[2 * k < count ? 0 : 1]; }
 
-// Calls use(group) for the pairs that are sampled in one way and have had equally many rays.
+PairHalf all_of(const Pair& pair) {
+  const auto& [a, b] = pair.halves;
+  return {a.weight + b.weight,       a.seen_weight + b.seen_weight,     a.seen + b.seen,
+          a.idle_seen + b.idle_seen, a.weighted_rays + b.weighted_rays, a.idle_rays + b.idle_rays};
+}
+
+// Calls use(group) for the pairs that are sampled in one way and get equally many rays.
 template <typename Use>
 void for_groups(std::span<Pair> pairs, Use use) {
-  const auto key = [](const Pair& p) { return std::make_tuple(p.is_adjacent, p.effort, p.rays()); };
+  const auto key = [](const Pair& p) { return std::make_pair(p.is_adjacent, p.effort); };
   std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& a, const Pair& b) { return key(a) < key(b); });
   for (std::size_t first = 0, end = 0; first < pairs.size(); first = end) {
     while (end < pairs.size() && key(pairs[end]) == key(pairs[first])) ++end;
@@ -119,19 +124,8 @@ PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, con
   return {x, y, smaller.area * larger.area * geometry_term(x, smaller.normal, y, larger.normal), 0};
 }
 
-PairHalf& PairHalf::operator+=(const PairHalf& other) {
-  weight += other.weight;
-  seen_weight += other.seen_weight;
-  seen += other.seen;
-  idle_seen += other.idle_seen;
-  weighted_rays += other.weighted_rays;
-  idle_rays += other.idle_rays;
-  return *this;
-}
-
 double Pair::visible_share() const {
-  PairHalf all = halves[0];
-  all += halves[1];
+  const PairHalf all = all_of(*this);
   const bool idle = all.weighted_rays == 0;
   return static_cast<double>(idle ? all.idle_seen : all.seen) / std::max(1U, idle ? all.idle_rays : all.weighted_rays);
 }
@@ -142,7 +136,7 @@ PairSampler::PairSampler(const PatchMesh& mesh, const std::vector<PatchShape>& s
       shapes_(shapes),
       occluder_(occluder),
       far_rule_(options.short_cuts.far ? FarRule::coarse : FarRule::fine),
-      samples_(half_of(options.samples)),
+      samples_(even(options.samples)),
       scale_(occluder.frame().scale),
       keys_(patch_keys(mesh)),
       patches_(sampled_patches(mesh, shapes, occluder.frame())),
@@ -164,32 +158,29 @@ Pair PairSampler::new_pair(PatchIndex i, PatchIndex j, float unoccluded) const {
   if (adjacent && sizes_differ ? second < first : keys_[j] < keys_[i]) std::swap(i, j);
   return {.first = i,
           .second = j,
-          .halves = {PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 0)},
-                     PairHalf{.set = table_.of_pair(keys_[i], keys_[j], 6)}},
+          .set = table_.of_pair(keys_[i], keys_[j]),
           .unoccluded = unoccluded,
           .is_adjacent = adjacent};
 }
 
-// Traces samples [begin, end) of both halves of every pair. A packet holds 1, 2, 4, 8 or 16 rays of each of its halves,
-// so that its rays are coherent.
+// Traces samples [begin, end) of every pair. A packet holds 2, 4, 8 or 16 rays of each of its pairs, so that its rays
+// are coherent.
 void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
   PairSamples next;
   for (std::uint32_t k = begin; k < end;) {
     std::uint32_t step = 16;
-    while (step > 1 && (k % step != 0 || end - k < step)) step /= 2;
+    while (step > 2 && (k % step != 0 || end - k < step)) step /= 2;
     const std::size_t at_once = ShadowPacket::size / step;
-    const std::size_t halves = 2 * pairs.size();
-    for (std::size_t h = 0; h < halves; h += at_once) {
+    for (std::size_t p = 0; p < pairs.size(); p += at_once) {
       for (std::size_t n = 0; n < at_once; ++n) {
-        // Lanes beyond the last half repeat it.
-        const std::size_t at = std::min(h + n, halves - 1);
-        const Pair& pair = pairs[at / 2];
+        // Lanes beyond the last pair repeat it.
+        const Pair& pair = pairs[std::min(p + n, pairs.size() - 1)];
         add_samples(next, static_cast<int>(n * step), static_cast<int>(step), patches_[pair.first],
-                    patches_[pair.second], half_at(pairs, at).set, k, scale_);
+                    patches_[pair.second], pair.set, k, scale_);
       }
       const auto arriving = occluder_.transmittance(next.rays);
-      for (std::size_t lane = 0; lane < ShadowPacket::size && h + lane / step < halves; ++lane) {
-        add(half_at(pairs, h + lane / step), next.weight[lane], arriving[lane]);
+      for (std::size_t lane = 0; lane < ShadowPacket::size && p + lane / step < pairs.size(); ++lane) {
+        add(half_of(pairs[p + lane / step], k + lane % step, end), next.weight[lane], arriving[lane]);
       }
     }
     k += step;
@@ -198,24 +189,21 @@ void PairSampler::trace_packets(std::span<Pair> pairs, std::uint32_t begin, std:
 
 // The same for adjacent pairs: by solid angle, as the geometry term has no finite variance there.
 void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std::uint32_t end) const {
-  const std::size_t count = end - begin;  // of each half
-  const std::size_t halves = 2 * pairs.size();
-  if (pairs.size() > 1 && halves * count > rays_at_once) {
+  const std::size_t count = end - begin;
+  if (pairs.size() > 1 && pairs.size() * count > rays_at_once) {
     trace_adjacent(pairs.first(pairs.size() / 2), begin, end);
     return trace_adjacent(pairs.subspan(pairs.size() / 2), begin, end);
   }
   std::vector<Segment> segments;
   std::vector<float> weights;
-  segments.reserve(halves * count);
-  weights.reserve(halves * count);
-  for (std::size_t h = 0; h < halves; ++h) {
-    const Pair& pair = pairs[h / 2];
-    const SampleSet& set = half_at(pairs, h).set;
+  segments.reserve(pairs.size() * count);
+  weights.reserve(pairs.size() * count);
+  for (const Pair& pair : pairs) {
     const PatchShape& a = shapes_[pair.first];
     const PatchShape& b = shapes_[pair.second];
     for (std::size_t k = begin; k < end; ++k) {
       const auto at = [&](std::size_t d) {
-        return static_cast<double>(shifted(set.net[d * set.stride + k], set.shift[d]));
+        return static_cast<double>(shifted(pair.set.net[d * pair.set.stride + k], pair.set.shift[d]));
       };
       const Point x = square_to_quad(a.corners.points, at(0), at(1));
       const PolygonSample y = sample_solid_angle(x, a.normal, b.corners, at(2), at(3));
@@ -225,7 +213,8 @@ void PairSampler::trace_adjacent(std::span<Pair> pairs, std::uint32_t begin, std
     }
   }
   const std::vector<float> arriving = occluder_.transmittance(segments);
-  for (std::size_t k = 0; k < segments.size(); ++k) add(half_at(pairs, k / count), weights[k], arriving[k]);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    add(half_of(pairs[k / count], begin + k % count, end), weights[k], arriving[k]);
 }
 
 // Samples [begin, end) of pairs that are sampled in one way; none when there are that many already.
@@ -238,11 +227,11 @@ void PairSampler::trace(std::span<Pair> pairs, std::uint32_t begin, std::uint32_
 // Uses the form factor from the smaller patch, or its estimate by the weights of the first samples. If none of these
 // has a weight, because the patches see each other in a sliver, the effort is the largest.
 std::uint32_t PairSampler::effort_for(const Pair& pair) const {
-  const auto& [one, other] = pair.halves;
-  if (one.weighted_rays + other.weighted_rays == 0) return most_effort;
+  const PairHalf all = all_of(pair);
+  if (all.weighted_rays == 0) return most_effort;
   const double first = shapes_[pair.first].area;
   const double second = shapes_[pair.second].area;
-  const double mean_weight = static_cast<double>(one.weight + other.weight) / pair.rays();
+  const double mean_weight = static_cast<double>(all.weight) / all.rays();
   const double unoccluded = pair.unoccluded >= 0 ? static_cast<double>(pair.unoccluded) : first * second * mean_weight;
   return sampling_effort(unoccluded / std::min(first, second));
 }
@@ -253,8 +242,11 @@ std::vector<Pair> PairSampler::sampled(std::vector<Pair> pairs) const {
   trace({pairs.begin(), others}, 0, samples_);
   trace({others, pairs.end()}, 0, samples_);
 
-  // 2. More where the form factor is large.
-  for (Pair& pair : pairs) pair.effort = effort_for(pair);
+  // 2. More where the form factor is large. All samples so far then belong to the first half.
+  for (Pair& pair : pairs) {
+    pair.effort = effort_for(pair);
+    if (pair.effort > 1) pair.halves = {all_of(pair), PairHalf{}};
+  }
   const auto usual = std::partition(pairs.begin(), pairs.end(), [](const Pair& p) { return p.effort > 1; });
   for_groups({pairs.begin(), usual},
              [&](std::span<Pair> group) { trace(group, samples_, group.front().effort * samples_); });

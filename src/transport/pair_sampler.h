@@ -37,9 +37,8 @@ struct PairSample {
 /// A sample with uniformly distributed points on both patches: weight A_i A_j G.
 PairSample draw_by_area(const PatchShape& smaller, const PatchShape& larger, const std::array<double, 4>& at);
 
-/// Half of the shadow rays of a pair, with their results so far.
+/// The results of half of the shadow rays of a pair.
 struct PairHalf {
-  SampleSet set;
   float weight = 0;                 ///< summed weights of its samples: geometry terms, 1/m^2
   float seen_weight = 0;            ///< the same, each times the transmittance of its shadow ray
   float seen = 0;                   ///< summed transmittances of samples with a weight
@@ -48,14 +47,14 @@ struct PairHalf {
   std::uint32_t idle_rays = 0;      ///< of samples without
 
   std::uint32_t rays() const { return weighted_rays + idle_rays; }
-  PairHalf& operator+=(const PairHalf& other);  ///< adds the results
 };
 
-/// A pair of facing patches. Two independent halves of its samples estimate its exchange area twice.
+/// A pair of facing patches. The first and the second half of its samples estimate its exchange area twice.
 struct Pair {
   PatchIndex first = 0;  ///< rays are sampled from here
   PatchIndex second = 0;
-  std::array<PairHalf, 2> halves;
+  SampleSet set;
+  std::array<PairHalf, 2> halves{};
   float unoccluded = 0;      ///< exchange area without occluders, m^2; -1 when not yet computed
   std::uint32_t effort = 1;  ///< multiple of the usual number of samples
   bool is_adjacent = false;  ///< sampled by solid angle
@@ -102,7 +101,7 @@ class PairSampler {
   const std::vector<PatchShape>& shapes_;
   const Occluder& occluder_;
   FarRule far_rule_;
-  std::uint32_t samples_;  // the usual number in each half
+  std::uint32_t samples_;  // the usual number, even
   double scale_;
   std::vector<std::uint32_t> keys_;
   std::vector<SampledPatch> patches_;

@@ -1,7 +1,9 @@
 // Models that are tiny, huge or far from the origin, with degenerate faces or with reversed faces.
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
+#include "patchlight/transport/sampling_error.h"
 
+#include "form_factor/patch_shape.h"
 #include "mesh/mesher.h"
 #include "scene/repair.h"
 #include "support/scenes.h"
@@ -33,15 +35,38 @@ struct Placing {
 
 class Placings : public testing::TestWithParam<Placing> {};
 
+// The largest weight of a ray in units of the mean, for the pairs of this mesh.
+constexpr double largest_weight = 2;
+
+// The part of F_ij that one of n rays is worth, at most w_k / (n A_i). n is the usual number of samples times the
+// effort, which an estimate of U may halve.
+Eigen::MatrixXd worth_of_one_ray(const PatchMesh& mesh) {
+  const std::vector<PatchShape> shapes = patch_shapes(mesh);
+  Eigen::MatrixXd worth(mesh.size(), mesh.size());
+  for (PatchIndex i = 0; i < mesh.size(); ++i) {
+    for (PatchIndex j = 0; j < mesh.size(); ++j) {
+      const double U = i == j ? 0 : unoccluded_exchange_area(shapes[i], shapes[j]);
+      const double rays = AssemblyOptions().samples * sampling_effort(U / std::min(mesh.area[i], mesh.area[j])) / 2.0;
+      worth(i, j) = largest_weight * U / (rays * mesh.area[i]);
+    }
+  }
+  return worth;
+}
+
 // F_ij does not depend on position, size and orientation. Random points are defined in the scene's own frames, so each
-// pair gets the same rays. The largest difference is rounding, 6e-8 F in single precision.
+// pair gets the same rays. Most entries differ by rounding, 6e-8 F in single precision. By rounding, rays also pass
+// edges 1e-7 of the extent nearer or farther. So about one ray in three million arrives in only one of the scenes. Each
+// has four million rays; eight pairs allow for chance.
 TEST_P(Placings, FormFactorsAreTheSame) {
   const Placing placing = GetParam();
   Eigen::Affine3d motion(Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()));
   motion = Eigen::Translation3d(placing.shift, -placing.shift, placing.shift) * motion * Eigen::Scaling(placing.scale);
-  const auto form_factors = [](const Scene& scene, double max_edge) -> Eigen::MatrixXd {
-    const PatchMesh mesh = tessellate(scene, kept_sides(scene, Sides::front), max_edge);
-    const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene)).exchange_areas;
+  const auto mesh_of = [](const Scene& scene, double max_edge) {
+    return tessellate(scene, kept_sides(scene, Sides::front), max_edge);
+  };
+  const auto form_factors = [&](const Scene& scene, double max_edge, std::uint64_t seed) -> Eigen::MatrixXd {
+    const PatchMesh mesh = mesh_of(scene, max_edge);
+    const ExchangeAreas S = assemble_exchange_areas(mesh, Occluder(scene), {.seed = seed}).exchange_areas;
     Eigen::MatrixXd F(mesh.size(), mesh.size());
     for (PatchIndex i = 0; i < mesh.size(); ++i) {
       for (PatchIndex j = 0; j < mesh.size(); ++j) F(i, j) = static_cast<double>(S.at(i, j)) / mesh.area[i];
@@ -50,11 +75,16 @@ TEST_P(Placings, FormFactorsAreTheSame) {
   };
   const Scene room = repair(furnished_room(0.6));
   const Scene there = repair(moved(furnished_room(0.6), motion));
-  const Eigen::MatrixXd expected = form_factors(room, 0.5001);
-  const Eigen::MatrixXd F = form_factors(there, 0.5001 * placing.scale);
-  ASSERT_EQ(F.rows(), expected.rows());
-  EXPECT_GT(expected.maxCoeff(), 0.05);
-  EXPECT_LT((F - expected).cwiseAbs().maxCoeff(), 1e-6);
+  const Eigen::MatrixXd one_ray = worth_of_one_ray(mesh_of(room, 0.5001));
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Eigen::MatrixXd expected = form_factors(room, 0.5001, seed);
+    const Eigen::MatrixXd F = form_factors(there, 0.5001 * placing.scale, seed);
+    ASSERT_EQ(F.rows(), expected.rows());
+    EXPECT_GT(expected.maxCoeff(), 0.05);
+    const Eigen::ArrayXXd apart = (F - expected).cwiseAbs().array();
+    EXPECT_TRUE((apart < 1e-6 + one_ray.array()).all()) << seed;
+    EXPECT_LE((apart >= 1e-6).count(), 2 * 8) << "both entries of a pair, seed " << seed;
+  }
 
   const Simulation one = simulate(room, coarse());
   const Simulation other = simulate(there, coarse(placing.scale));

@@ -220,19 +220,19 @@ TEST(StoredFormFactors, WithErrorsOfOtherPairsAreRefused) {
   const Scene scene = without_a_wall(closed_room());
   const FormFactors found = find_form_factors(scene, coarse(false));
   write_form_factors(place, {scene, found, {}, "a command"});
-  const std::string content = content_of(place / "entry_errors.npy");
+  const std::string content = content_of(place / "half_differences.npy");
   const FormFactorInfo info = read_form_factor_info(place);
   EXPECT_NO_THROW(read_exchange(place, info, found.mesh));
   for (const std::string& damaged : {content.substr(0, content.size() - 1), content + '\0', std::string()}) {
-    put(place / "entry_errors.npy", damaged);
+    put(place / "half_differences.npy", damaged);
     EXPECT_THROW(read_exchange(place, info, found.mesh), InputError);
   }
   // Earlier versions had bytes without a sign, of another meaning.
   std::string unsigned_bytes = content;
   unsigned_bytes.replace(content.find("|i1"), 3, "|u1");
-  put(place / "entry_errors.npy", unsigned_bytes);
+  put(place / "half_differences.npy", unsigned_bytes);
   EXPECT_THROW(read_exchange(place, info, found.mesh), InputError);
-  fs::remove(place / "entry_errors.npy");
+  fs::remove(place / "half_differences.npy");
   EXPECT_EQ(read_exchange(place, info, found.mesh).half_differences.size(), 0U);
 }
 
