@@ -33,7 +33,7 @@ struct Choice {
   double rest = 0;  ///< in [0, 1]
 };
 
-/// What may be chosen.
+/// An item of a choice.
 struct Alternative {
   std::size_t index = 0;
   double probability = 0;  ///< positive
