@@ -158,7 +158,7 @@ class FormFactorsTest(ToolTest):
             # inaccurate.
             self.assertAlmostEqual(mean_of(estimator), auto, delta=0.03, msg=estimator)
         self.find("-o", "area.ff", "--patches", "60", "--estimator", "area")
-        self.assertFalse((self.folder / "area.ff/standard_error.npy").exists())
+        self.assertFalse((self.folder / "area.ff/sampling_error.npy").exists())
         self.run_tool("solve", "room.obj", "--json", "area.json", "--form-factors", "area.ff")
         report = json.loads((self.folder / "area.json").read_text())
         self.assertEqual(report["plan"]["estimator"], "area")
