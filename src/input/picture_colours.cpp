@@ -3,7 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/sha256.h"
-#include "input/scene_bytes.h"
+#include "input/read_isolated.h"
 #include "input/text.h"
 #include "light/texture.h"
 

@@ -9,7 +9,7 @@
 #include "input/materials.h"
 #include "input/picture_colours.h"
 #include "input/read_model.h"
-#include "input/scene_bytes.h"
+#include "input/read_isolated.h"
 #include "input/text.h"
 
 #include <Eigen/Core>

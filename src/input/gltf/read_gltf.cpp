@@ -8,8 +8,8 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
+#include "input/read_isolated.h"
 #include "input/read_model.h"
-#include "input/scene_bytes.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,7 @@
 #include "patchlight/base/error.h"
 
 #include "files/isolated.h"
+#include "files/message.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +11,7 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -145,66 +147,22 @@ StoredSolution read_here(const std::filesystem::path& file) {
   return stored;
 }
 
-// The solution goes through a pipe to the process that asks for it.
-std::string bytes_of(const StoredSolution& stored) {
-  MessageWriter out;
-  out.text(stored.scene_hash);
-  for (const bool flag : {stored.follows_reflections, stored.converged}) out.plain(flag);
-  out.plain(stored.seed);
-  out.plain(stored.vertices.size());
-  for (const Point& vertex : stored.vertices) out.numbers(vertex);
-  out.plain(stored.corners.size());
-  for (std::size_t k = 0; k < stored.corners.size(); ++k) {
-    for (const std::uint32_t corner : stored.corners[k]) out.plain(corner);
-    out.plain(stored.polygon[k]);
-    out.plain(stored.side[k] == Side::back);
-  }
-  out.plain(stored.middles.size());
-  for (const Middle& middle : stored.middles)
-    for (const std::uint32_t vertex : {middle.vertex, middle.ends[0], middle.ends[1]}) out.plain(vertex);
-  for (const Field* field : {&stored.radiosity, &stored.exitance, &stored.reflectance}) out.field(*field);
-  out.plain(stored.decisions.size());
-  for (const Decision& decision : stored.decisions) {
-    out.plain(static_cast<std::uint8_t>(decision.effect));
-    for (const bool flag : {decision.simulate, decision.forced}) out.plain(flag);
-  }
-  return std::move(out).bytes();
-}
-
-StoredSolution solution_from(std::string_view bytes) {
-  MessageReader in(bytes);
-  StoredSolution stored;
-  stored.scene_hash = in.text();
-  for (bool* flag : {&stored.follows_reflections, &stored.converged}) *flag = in.plain<bool>();
-  stored.seed = in.plain<std::uint64_t>();
-  stored.vertices.resize(in.count());
-  for (Point& vertex : stored.vertices) vertex = in.point();
-  stored.corners.resize(in.count());
-  for (auto& corners : stored.corners) {
-    for (std::uint32_t& corner : corners) corner = in.plain<std::uint32_t>();
-    stored.polygon.push_back(in.plain<PolygonIndex>());
-    stored.side.push_back(in.plain<bool>() ? Side::back : Side::front);
-  }
-  stored.middles.resize(in.count());
-  for (Middle& middle : stored.middles)
-    for (std::uint32_t* vertex : {&middle.vertex, &middle.ends[0], &middle.ends[1]})
-      *vertex = in.plain<std::uint32_t>();
-  for (Field* field : {&stored.radiosity, &stored.exitance, &stored.reflectance}) *field = in.field();
-  stored.decisions.resize(in.count());
-  for (Decision& decision : stored.decisions) {
-    decision.effect = static_cast<Effect>(in.plain<std::uint8_t>());
-    for (bool* flag : {&decision.simulate, &decision.forced}) *flag = in.plain<bool>();
-  }
-  return stored;
-}
-
 }  // namespace
+
+// The members that are sent between processes.
+auto members_of(Is<Middle> auto& middle) { return std::tie(middle.vertex, middle.ends); }
+auto members_of(Is<Decision> auto& decision) { return std::tie(decision.effect, decision.simulate, decision.forced); }
+auto members_of(Is<StoredSolution> auto& stored) {
+  return std::tie(stored.scene_hash, stored.vertices, stored.corners, stored.polygon, stored.side, stored.middles,
+                  stored.radiosity, stored.exitance, stored.reflectance, stored.decisions, stored.follows_reflections,
+                  stored.converged, stored.seed);
+}
 
 StoredSolution read_vtk(const std::filesystem::path& file) {
   if (!std::ifstream(file)) throw InputError(file.string(), "cannot be opened; is there such a file?");
-  const std::string bytes = bytes_isolated(file.string(), [&] { return bytes_of(read_here(file)); });
+  const std::string bytes = bytes_isolated(file.string(), [&] { return message_of(read_here(file)); });
   try {
-    return solution_from(bytes);
+    return value_in<StoredSolution>(bytes);
   } catch (const std::exception&) {
     refuse_file(file, "it cannot be read");
   }

@@ -1,6 +1,6 @@
 #include "patchlight/base/error.h"
 
-#include "input/scene_bytes.h"
+#include "input/read_isolated.h"
 #include "support/scenes.h"
 
 #include <atomic>
