@@ -5,9 +5,9 @@
 #include "output/file/whole_file.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <fstream>
+#include <iomanip>
+#include <ostream>
 #include <string_view>
 
 namespace patchlight {
@@ -20,13 +20,6 @@ const FolderResult annual_folder{
 
 bool may_be_replaced(const std::filesystem::path& folder) { return holds_result(folder, annual_folder); }
 
-void append(std::string& text, double value, int digits) {
-  std::array<char, 32> buffer{};
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  text.append(buffer.data(), end.ptr);
-}
-
 void write_rows(const std::filesystem::path& file, const HourlyValues& values) {
   write_npy(file, static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols()),
             [&](std::size_t row, std::span<float> to) {
@@ -37,19 +30,16 @@ void write_rows(const std::filesystem::path& file, const HourlyValues& values) {
 
 // Month, day and middle of the hour, then all sensors; 0 inside walls, as the format has no other word for it.
 void write_ill(const std::filesystem::path& file, const AnnualOutput& output) {
-  std::ofstream stream(file, std::ios::binary);
-  std::string line;
-  for (std::size_t row = 0; row < output.hours.size(); ++row) {
-    const HourRow& hour = output.hours[row];
-    line = std::to_string(hour.month) + ' ' + std::to_string(hour.day) + ' ' + std::to_string(hour.hour) + ".5";
-    for (const float value : output.light.illuminance.row(static_cast<Eigen::Index>(row))) {
-      line += ' ';
-      append(line, std::isnan(value) ? 0 : static_cast<double>(value), 5);
+  write_stream(file, [&](std::ostream& stream) {
+    stream << std::setprecision(5);
+    for (std::size_t row = 0; row < output.hours.size(); ++row) {
+      const HourRow& hour = output.hours[row];
+      stream << hour.month << ' ' << hour.day << ' ' << hour.hour << ".5";
+      for (const float value : output.light.illuminance.row(static_cast<Eigen::Index>(row)))
+        stream << ' ' << (std::isnan(value) ? 0.0 : static_cast<double>(value));
+      stream << '\n';
     }
-    stream << line << '\n';
-  }
-  stream.close();
-  if (!stream) throw OutputError(file.string(), "cannot be written");
+  });
 }
 
 template <std::size_t count>

@@ -10,14 +10,13 @@
 #include "archive/scene_hash.h"
 #include "output/file/whole_file.h"
 #include "output/mesh/write_mesh.h"
+#include "output/report/report_json.h"
 #include "pipeline/problem_of.h"
 #include "plan/planned_scene.h"
 #include "transport/closure.h"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <functional>
 #include <iomanip>
@@ -123,8 +122,7 @@ void write_coordinates(const std::filesystem::path& file, const Matrix& matrix, 
   for (PatchIndex i = 0; i < size; ++i) {
     for (PatchIndex j = 0; j < size; ++j) entries += matrix.entry(i, j) != 0;
   }
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
+  write_stream(file, [&](std::ostream& stream) {
     stream << "%%MatrixMarket matrix coordinate real general\n% " << matrix.meaning << '\n';
     stream << size << ' ' << size << ' ' << entries << '\n' << std::setprecision(9);
     for (PatchIndex i = 0; i < size && stream; ++i) {
@@ -134,8 +132,6 @@ void write_coordinates(const std::filesystem::path& file, const Matrix& matrix, 
         if (entry != 0) stream << i + 1 << ' ' << j + 1 << ' ' << static_cast<float>(entry) << '\n';
       }
     }
-    stream.close();
-    if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
   });
 }
 
@@ -217,52 +213,44 @@ std::string info_json(const FormFactorResult& result) {
                      {"lost_share_rays", exchange.lost.rays_per_patch}};
   json["counts"] = counts_part(exchange.counts);
   json["files"] = files_part(result);
-  // Names from a model may hold bytes that are not UTF-8: they are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-// hits_0.npy and the like.
-bool is_of_half(const std::string& name) {
-  const auto is_one = [&](const std::string& begin) { return name == begin + "_0.npy" || name == begin + "_1.npy"; };
-  return std::any_of(file_name::of_half.begin(), file_name::of_half.end(), is_one) ||
-         std::any_of(file_name::of_stops.begin(), file_name::of_stops.end(), is_one) ||
-         std::any_of(file_name::of_classes.begin(), file_name::of_classes.end(), is_one);
+  return json_text(json);
 }
 
 }  // namespace
 
-// An earlier result holds info.json with the right kind, and nothing that was not written with it.
 bool is_earlier_form_factors(const std::filesystem::path& folder) {
-  static constexpr std::array<std::string_view, 22> names = {file_name::dense,
-                                                             file_name::sparse,
-                                                             file_name::dense_error,
-                                                             file_name::sparse_error,
-                                                             file_name::half_differences,
-                                                             file_name::area,
-                                                             file_name::exitance,
-                                                             file_name::reflectance,
-                                                             file_name::lost_share,
-                                                             file_name::raw_row_sum,
-                                                             file_name::mesh,
-                                                             file_name::scene,
-                                                             file_name::info,
-                                                             file_name::by_material,
-                                                             file_name::by_object,
-                                                             file_name::hit_distance,
-                                                             file_name::directed,
-                                                             file_name::lamps,
-                                                             file_name::emitter_factors[0],
-                                                             file_name::emitter_factors[1],
-                                                             file_name::emitter_standard_error,
-                                                             file_name::specular_kinds};
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool is_named = std::find(names.begin(), names.end(), name) != names.end() || is_of_half(name);
-    if (!is_named || !entry.is_regular_file()) return false;
+  FolderResult result{file_name::info,
+                      file_name::kind,
+                      {file_name::dense,
+                       file_name::sparse,
+                       file_name::dense_error,
+                       file_name::sparse_error,
+                       file_name::half_differences,
+                       file_name::area,
+                       file_name::exitance,
+                       file_name::reflectance,
+                       file_name::lost_share,
+                       file_name::raw_row_sum,
+                       file_name::mesh,
+                       file_name::scene,
+                       file_name::info,
+                       file_name::by_material,
+                       file_name::by_object,
+                       file_name::hit_distance,
+                       file_name::directed,
+                       file_name::lamps,
+                       file_name::emitter_factors[0],
+                       file_name::emitter_factors[1],
+                       file_name::emitter_standard_error,
+                       file_name::specular_kinds}};
+  for (const std::span<const char* const> list :
+       {std::span<const char* const>(file_name::of_half), std::span<const char* const>(file_name::of_stops),
+        std::span<const char* const>(file_name::of_classes)}) {
+    for (const std::string name : list) result.names.insert(result.names.end(), {name + "_0.npy", name + "_1.npy"});
   }
-  std::ifstream stream(folder / file_name::info);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("kind", Json()) == file_name::kind;
+  using Iterator = std::filesystem::directory_iterator;
+  return holds_result(folder, result) &&
+         std::all_of(Iterator(folder), Iterator(), [](const auto& entry) { return entry.is_regular_file(); });
 }
 
 void write_matrix(const std::filesystem::path& file, const Exchange& exchange, MatrixFormat format,

@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -32,9 +30,9 @@ std::string header(const std::string& type, const std::string& shape) {
   return std::string(magic) + '\1' + '\0' + static_cast<char>(length & 255) + static_cast<char>(length >> 8) + text;
 }
 
-void close_or_fail(std::ofstream& stream, const std::filesystem::path& file) {
-  stream.close();
-  if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+template <class Number>
+void write_values(std::ostream& stream, std::span<const Number> values) {
+  stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
 }
 
 // The length of the header: two bytes in version 1, four later.
@@ -112,11 +110,9 @@ std::string type_of() {
 
 template <class Number>
 void write_npy_numbers(const std::filesystem::path& file, std::span<const Number> values) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
+  write_stream(file, [&](std::ostream& stream) {
     stream << header(type_of<Number>(), std::to_string(values.size()) + ',');
-    stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-    close_or_fail(stream, file);
+    write_values(stream, values);
   });
 }
 
@@ -174,28 +170,23 @@ template void read_npy_pieces(const std::filesystem::path&, std::size_t,
 
 void write_npy(const std::filesystem::path& file, std::size_t rows, std::size_t columns,
                const std::function<void(std::size_t row, std::span<float> values)>& fill) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
+  write_stream(file, [&](std::ostream& stream) {
     stream << header("<f4", std::to_string(rows) + ", " + std::to_string(columns));
     std::vector<float> values(columns);
     for (std::size_t row = 0; row < rows && stream; ++row) {
       fill(row, values);
-      stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(columns * sizeof(float)));
+      write_values<float>(stream, values);
     }
-    close_or_fail(stream, file);
   });
 }
 
 void write_npy(const std::filesystem::path& file, const Eigen::MatrixXd& values) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
+  write_stream(file, [&](std::ostream& stream) {
     std::string shape = std::to_string(values.rows()) + ',';
     if (values.cols() > 1) shape.append(1, ' ').append(std::to_string(values.cols()));
     stream << header("<f8", shape);
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> in_rows = values;
-    stream.write(reinterpret_cast<const char*>(in_rows.data()),
-                 static_cast<std::streamsize>(in_rows.size() * static_cast<Eigen::Index>(sizeof(double))));
-    close_or_fail(stream, file);
+    write_values<double>(stream, {in_rows.data(), static_cast<std::size_t>(in_rows.size())});
   });
 }
 

@@ -11,6 +11,7 @@
 #include "optics/surface_optics.h"
 #include "output/file/whole_file.h"
 #include "output/mesh/write_mesh.h"
+#include "output/report/report_json.h"
 #include "plan/planned_scene.h"
 #include "transport/ray_transport.h"
 
@@ -20,7 +21,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <system_error>
@@ -158,8 +158,13 @@ template <class Number, class All, class Value>
 void write_each(const std::filesystem::path& file, const All& all, const Value& value) {
   std::vector<Number> numbers;
   numbers.reserve(all.size());
-  for (const auto& one : all) numbers.push_back(value(one));
+  for (const auto& one : all) numbers.push_back(static_cast<Number>(value(one)));
   write_npy_numbers(file, std::span<const Number>(numbers));
+}
+
+template <class Number, class All>
+void write_as(const std::filesystem::path& file, const All& all) {
+  write_each<Number>(file, all, [](const auto& one) { return one; });
 }
 
 std::int32_t column_of(const SpecularStop& stop) {
@@ -194,8 +199,7 @@ bool is_polygon(const SpecularStop& stop, std::size_t polygons) {
 
 // Writes those of one half. Throws OutputError.
 void write_stops(const std::filesystem::path& folder, std::size_t half, const RayRows& rows) {
-  const std::vector<std::int64_t> begins(rows.first_stop.begin(), rows.first_stop.end());
-  write_npy_numbers(file_of(folder, 0, half), std::span<const std::int64_t>(begins));
+  write_as<std::int64_t>(file_of(folder, 0, half), rows.first_stop);
   write_each<std::int32_t>(file_of(folder, 1, half), rows.stops, column_of);
   write_each<float>(file_of(folder, 2, half), rows.stops, [](const SpecularStop& s) { return s.form_factor; });
   write_each<std::int32_t>(file_of(folder, 3, half), rows.stops, [](const SpecularStop& s) {
@@ -217,10 +221,9 @@ void write_classes(const std::filesystem::path& folder, const RowsByClass& by_cl
   for (std::size_t half = 0; half < 2; ++half) {
     const std::vector<ClassEntry>& entries = by_class.halves.at(half);
     const auto file = [&](std::size_t which) { return in_half(folder, file_name::of_classes.at(which), half); };
-    const auto number = [](std::uint32_t value) { return static_cast<std::int32_t>(value); };
-    write_each<std::int32_t>(file(0), entries, [&](const ClassEntry& e) { return number(e.from); });
-    write_each<std::int32_t>(file(1), entries, [&](const ClassEntry& e) { return number(e.to); });
-    write_each<std::int32_t>(file(2), entries, [&](const ClassEntry& e) { return number(e.way_class); });
+    write_each<std::int32_t>(file(0), entries, [](const ClassEntry& e) { return e.from; });
+    write_each<std::int32_t>(file(1), entries, [](const ClassEntry& e) { return e.to; });
+    write_each<std::int32_t>(file(2), entries, [](const ClassEntry& e) { return e.way_class; });
     write_each<float>(file(3), entries, [](const ClassEntry& e) { return e.form_factor; });
   }
 }
@@ -268,49 +271,10 @@ std::vector<std::array<double, 2>> read_kinds(const std::filesystem::path& file)
   return kinds;
 }
 
-// The contents of each file, by its name.
-std::map<std::string, std::string> meaning_of_stop_files() {
-  const std::array<const char*, 5> meaning = {
-      "where the stops of each row begin; one more at the end",
-      "the patch that is met at a stop; -1: the ray has left the model, -2: it meets a side without patches",
-      "form factor of the ray at a stop, without losses before it and without specular light there; unit 1",
-      "the clear face or mirror of a stop, or from which the ray starts; -1: none",
-      "step of a stop + 8 if at a back + 16 times the cosine of the angle there in units of 2^-28; step 0: sent, 1: "
-      "crossed, 2: through, 3: mirrored, 4: kept, 5: ends"};
-  std::map<std::string, std::string> all;
-  for (std::size_t half = 0; half < 2; ++half)
-    for (std::size_t which = 0; which < meaning.size(); ++which)
-      all[file_of({}, which, half).string()] = meaning.at(which);
-  const std::array<const char*, 4> of_entry = {"the rows of entries by specular ways", "the columns of these entries",
-                                               "the classes of their ways, as listed in classes",
-                                               "their form factors, averaged over all bands; unit 1"};
-  for (std::size_t half = 0; half < 2; ++half)
-    for (std::size_t which = 0; which < of_entry.size(); ++which)
-      all[in_half({}, file_name::of_classes.at(which), half).string()] = of_entry.at(which);
-  all[file_name::specular_kinds] =
-      "per polygon, front and back: 0 if no ray goes on from there, 1 from a mirror, else 1 and the index of "
-      "refraction of a clear face, -1 where it reflects nothing";
-  return all;
-}
-
 using Json = nlohmann::ordered_json;
 
 std::filesystem::path file_of_half(const std::filesystem::path& folder, std::size_t which, std::size_t half) {
   return in_half(folder, file_name::of_half.at(which), half);
-}
-
-template <class To, class From, class Value>
-std::vector<To> values_of(const From& from, const Value& value) {
-  std::vector<To> values;
-  values.reserve(from.size());
-  for (const auto& one : from) values.push_back(static_cast<To>(value(one)));
-  return values;
-}
-
-template <class To, class From>
-void write_as(const std::filesystem::path& file, const From& from) {
-  const std::vector<To> values = values_of<To>(from, [](const auto& one) { return one; });
-  write_npy_numbers(file, std::span<const To>(values));
 }
 
 void write_half(const std::filesystem::path& folder, std::size_t half, const RayRows& rows) {
@@ -319,8 +283,8 @@ void write_half(const std::filesystem::path& folder, std::size_t half, const Ray
   write_as<std::int32_t>(file(1), rows.hits);
   write_as<double>(file(2), rows.hit_weight);
   write_as<std::int64_t>(file(3), rows.first_entry);
-  write_as<std::int32_t>(file(4), values_of<PatchIndex>(rows.entries, [](const RayEntry& e) { return e.patch; }));
-  write_as<float>(file(5), values_of<float>(rows.entries, [](const RayEntry& e) { return e.form_factor; }));
+  write_each<std::int32_t>(file(4), rows.entries, [](const RayEntry& e) { return e.patch; });
+  write_each<float>(file(5), rows.entries, [](const RayEntry& e) { return e.form_factor; });
   if (!rows.first_stop.empty()) write_stops(folder, half, rows);
 }
 
@@ -337,19 +301,38 @@ void write_lamps(const std::filesystem::path& folder, const RayExchange& exchang
   write(file_name::emitter_standard_error, factors.standard_error);
 }
 
+// Describes files of which there is one for each half of the rays.
+template <std::size_t n>
+void describe(Json& part, const std::array<const char*, n>& names, const std::array<const char*, n>& meaning) {
+  for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t which = 0; which < n; ++which) part[in_half({}, names[which], half).string()] = meaning[which];
+}
+
+void describe_stops(Json& part) {
+  describe(part, file_name::of_stops,
+           {"where the stops of each row begin; one more at the end",
+            "the patch that is met at a stop; -1: the ray has left the model, -2: it meets a side without patches",
+            "form factor of the ray at a stop, without losses before it and without specular light there; unit 1",
+            "the clear face or mirror of a stop, or from which the ray starts; -1: none",
+            "step of a stop + 8 if at a back + 16 times the cosine of the angle there in units of 2^-28; step 0: sent, "
+            "1: crossed, 2: through, 3: mirrored, 4: kept, 5: ends"});
+  describe(part, file_name::of_classes,
+           {"the rows of entries by specular ways", "the columns of these entries",
+            "the classes of their ways, as listed in classes", "their form factors, averaged over all bands; unit 1"});
+  part[file_name::specular_kinds] =
+      "per polygon, front and back: 0 if no ray goes on from there, 1 from a mirror, else 1 and the index of "
+      "refraction of a clear face, -1 where it reflects nothing";
+}
+
 Json files_of_rows(bool is_specular) {
   Json part;
-  const std::array<const char*, 6> meaning = {"where the hits of each row begin in hits; one more at the end",
-                                              "the patches that rays of each row have met: column j, once for each ray",
-                                              "per row the form factor of each of its hits; unit 1",
-                                              "where the entries of each row begin; one more at the end",
-                                              "the columns of entries",
-                                              "form factors found by rays towards bright patches; unit 1"};
-  for (std::size_t half = 0; half < 2; ++half)
-    for (std::size_t which = 0; which < meaning.size(); ++which)
-      part[file_of_half({}, which, half).string()] = meaning.at(which);
-  if (is_specular)
-    for (const auto& [name, meaning_of_file] : meaning_of_stop_files()) part[name] = meaning_of_file;
+  describe(part, file_name::of_half,
+           {"where the hits of each row begin in hits; one more at the end",
+            "the patches that rays of each row have met: column j, once for each ray",
+            "per row the form factor of each of its hits; unit 1",
+            "where the entries of each row begin; one more at the end", "the columns of entries",
+            "form factors found by rays towards bright patches; unit 1"});
+  if (is_specular) describe_stops(part);
   part[file_name::lamps] = "first patch of each lamp that is apart from the rows, and the one after its last";
   for (const char* name : file_name::emitter_factors)
     part[name] = "form factors to these lamps as wholes, row by row, a column for each; unit 1";
@@ -392,8 +375,7 @@ std::string info_of_rows(const Scene& scene, const RayFormFactors& found, const 
   }
   json["counts"] = {{"rays", found.exchange.rows.rays}, {"shadow_rays", found.exchange.rows.shadow_rays}};
   json["files"] = files_of_rows(is_specular);
-  // Names from a model may hold bytes that are not UTF-8: they are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 // The first entry of each row. A negative number in the file becomes a very large number here.

@@ -325,14 +325,18 @@ void write_whole_folder(const fs::path& folder, const MayReplace& may_replace,
   }
 }
 
-void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
-  write_whole_file(file, [&](const std::filesystem::path& temporary) {
+void write_stream(const fs::path& file, const std::function<void(std::ostream& stream)>& write) {
+  write_whole_file(file, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    write(stream);
     // A full disk may show on closing only.
     stream.close();
-    if (!stream) throw OutputError(file.string(), std::string("cannot be written: ") + std::strerror(errno));
+    if (!stream) fail_writing(file, "cannot be written", errno);
   });
+}
+
+void write_bytes(const fs::path& file, std::string_view bytes) {
+  write_stream(file, [bytes](std::ostream& stream) { stream << bytes; });
 }
 
 std::string replaced(std::string_view text, std::initializer_list<std::pair<char, std::string_view>> words) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
@@ -71,7 +72,10 @@ void write_whole_folder(const std::filesystem::path& folder, const MayReplace& m
 /// Fails early: \throws OutputError when write_whole_folder could not write here. Removes leftovers of killed runs.
 void check_folder_writable(const std::filesystem::path& folder, const MayReplace& may_replace);
 
-/// Writes `bytes` as a whole file, see write_whole_file(). \throws OutputError.
+/// Lets `write` fill a whole file, see write_whole_file(). \throws OutputError, also when the disk is full.
+void write_stream(const std::filesystem::path& file, const std::function<void(std::ostream& stream)>& write);
+
+/// Writes `bytes` as a whole file. \throws OutputError.
 void write_bytes(const std::filesystem::path& file, std::string_view bytes);
 
 /// The text with words in place of some letters.
