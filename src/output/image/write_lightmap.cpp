@@ -1,4 +1,3 @@
-
 #include "patchlight/base/error.h"
 #include "patchlight/light/spectrum.h"
 #include "patchlight/mesh/patch_mesh.h"
@@ -9,6 +8,7 @@
 
 #include "output/file/whole_file.h"
 #include "output/image/write_image.h"
+#include "output/mesh/glb_file.h"
 #include "output/mesh/write_mesh.h"
 #include "output/report/report_json.h"
 #include "render/lightmap.h"
@@ -63,12 +63,6 @@ Eigen::Vector2d place_in_picture(const Scene& scene, const PatchMesh& mesh, Patc
   return map ? Eigen::Vector2d(map->linear * point + map->offset) : in_metres;
 }
 
-void append_patch(std::vector<std::uint32_t>& triangles, const std::array<std::uint32_t, 4>& corners) {
-  const auto& [a, b, c, d] = corners;
-  triangles.insert(triangles.end(), {a, b, c});
-  if (c != d) triangles.insert(triangles.end(), {a, c, d});
-}
-
 // Vertices are shared within a chart; of a picture's places the first polygon's counts, which those beside it go on.
 ChartTriangles chart_triangles(const Scene& scene, const PatchMesh& mesh, const Lightmap& map) {
   ChartTriangles all;
@@ -116,116 +110,25 @@ ChartTriangles chart_triangles(const Scene& scene, const PatchMesh& mesh, const 
   return all;
 }
 
-// A glTF as it grows.
-class LightmapGlb {
- public:
-  LightmapGlb(const Scene& scene, const Provenance& provenance);
-
-  void add_vertices(const ChartTriangles& all, bool is_lit);
-  void add_picture(const std::string& png);
-  void add_primitive(const std::vector<std::uint32_t>& corners, GltfJson material);
-  void write(const std::filesystem::path& file, const std::string& extra_key, const GltfJson& extra);
-
- private:
-  std::size_t view(std::size_t begin, int target);
-  std::size_t add_floats(const std::vector<float>& values, std::size_t each, bool with_bounds);
-
-  const Scene& scene_;
-  Point centre_;
-  std::string bytes_;
-  GltfJson json_, attributes_, primitives_ = GltfJson::array(), materials_ = GltfJson::array();
-  GltfJson accessors_ = GltfJson::array(), views_ = GltfJson::array();
-};
-
-LightmapGlb::LightmapGlb(const Scene& scene, const Provenance& provenance)
-    : scene_(scene), centre_(bounds(scene).center()) {
-  json_["asset"] = gltf_asset(provenance);
-  json_["scene"] = 0;
-  json_["scenes"] = GltfJson::array({{{"nodes", GltfJson::array({0})}}});
-  json_["nodes"] = gltf_nodes(y_up(centre_, scene));
-}
-
-std::size_t LightmapGlb::view(std::size_t begin, int target) {
-  GltfJson json = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}};
-  if (target != 0) json["target"] = target;
-  views_.push_back(std::move(json));
-  bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
-  return views_.size() - 1;
-}
-
-// So many numbers each. Returns the accessor.
-std::size_t LightmapGlb::add_floats(const std::vector<float>& values, std::size_t each, bool with_bounds) {
-  const std::size_t begin = bytes_.size();
-  for (const float value : values) append_bytes(bytes_, value);
-  GltfJson json = {{"bufferView", view(begin, gltf::target_vertices)},
-                   {"componentType", gltf::type_float},
-                   {"count", values.size() / each},
-                   {"type", each == 2 ? "VEC2" : "VEC3"}};
-  if (with_bounds) {
-    std::vector<float> lowest(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(each)), highest = lowest;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      lowest[k % each] = std::min(lowest[k % each], values[k]);
-      highest[k % each] = std::max(highest[k % each], values[k]);
-    }
-    json["min"] = json_array(lowest);
-    json["max"] = json_array(highest);
-  }
-  accessors_.push_back(std::move(json));
-  return accessors_.size() - 1;
-}
-
-void LightmapGlb::add_vertices(const ChartTriangles& all, bool is_lit) {
+void add_vertices(GlbFile& glb, const ChartTriangles& all, const Scene& scene, bool is_lit) {
+  const Point centre = bounds(scene).center();
   std::vector<float> positions, normals, first, second;
   const auto append = [](std::vector<float>& to, const auto& vector) {
-    for (Eigen::Index k = 0; k < vector.size(); ++k) to.push_back(static_cast<float>(vector[k]));
+    for (const double value : vector) to.push_back(static_cast<float>(value));
   };
   for (const ChartVertex& vertex : all.vertices) {
-    append(positions, y_up(vertex.position - centre_, scene_));
-    append(normals, y_up(vertex.normal, scene_));
+    append(positions, y_up(vertex.position - centre, scene));
+    append(normals, y_up(vertex.normal, scene));
     append(first, is_lit ? vertex.in_picture : vertex.in_map);
     append(second, vertex.in_map);
   }
-  attributes_["POSITION"] = add_floats(positions, 3, true);
-  if (is_lit) attributes_["NORMAL"] = add_floats(normals, 3, false);
-  attributes_["TEXCOORD_0"] = add_floats(first, 2, false);
-  attributes_["TEXCOORD_1"] = is_lit ? add_floats(second, 2, false) : attributes_["TEXCOORD_0"].get<std::size_t>();
-}
-
-void LightmapGlb::add_picture(const std::string& png) {
-  const std::size_t begin = bytes_.size();
-  bytes_ += png;
-  json_["images"] = GltfJson::array({{{"bufferView", view(begin, 0)}, {"mimeType", "image/png"}}});
-  // Without smaller versions of it, in which charts would mix.
-  json_["samplers"] = GltfJson::array({{{"magFilter", gltf::linear_filter},
-                                        {"minFilter", gltf::linear_filter},
-                                        {"wrapS", gltf::clamp_to_edge},
-                                        {"wrapT", gltf::clamp_to_edge}}});
-  json_["textures"] = GltfJson::array({{{"sampler", 0}, {"source", 0}}});
-}
-
-void LightmapGlb::add_primitive(const std::vector<std::uint32_t>& corners, GltfJson material) {
-  const std::size_t begin = bytes_.size();
-  for (const std::uint32_t corner : corners) append_bytes(bytes_, corner);
-  accessors_.push_back({{"bufferView", view(begin, gltf::target_indices)},
-                        {"componentType", gltf::type_unsigned_int},
-                        {"count", corners.size()},
-                        {"type", "SCALAR"}});
-  primitives_.push_back(
-      {{"attributes", attributes_}, {"indices", accessors_.size() - 1}, {"material", materials_.size()}, {"mode", 4}});
-  materials_.push_back(std::move(material));
-}
-
-void LightmapGlb::write(const std::filesystem::path& file, const std::string& extra_key, const GltfJson& extra) {
-  if (!extra.is_null()) json_["asset"]["extras"][extra_key] = extra;
-  const auto is_unlit = [](const GltfJson& material) { return material.contains("extensions"); };
-  if (std::any_of(materials_.begin(), materials_.end(), is_unlit))
-    json_["extensionsUsed"] = GltfJson::array({"KHR_materials_unlit"});
-  json_["meshes"] = GltfJson::array({{{"primitives", primitives_}}});
-  json_["materials"] = materials_;
-  json_["accessors"] = accessors_;
-  json_["bufferViews"] = views_;
-  json_["buffers"] = GltfJson::array({{{"byteLength", bytes_.size()}}});
-  write_glb_file(file, json_, bytes_);
+  glb.add_attribute("POSITION", positions, 3);
+  if (is_lit) glb.add_attribute("NORMAL", normals, 3);
+  const std::size_t places = glb.add_attribute("TEXCOORD_0", first, 2);
+  if (is_lit)
+    glb.add_attribute("TEXCOORD_1", second, 2);
+  else
+    glb.share_attribute("TEXCOORD_1", places);
 }
 
 GltfJson matt_material(const Material& material, const Bands& bands, double opacity) {
@@ -257,15 +160,16 @@ bool is_clear(const Material& material) {
 void write_lightmap_glb(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,
                         const Lightmap& map, const Provenance& provenance) {
   const ChartTriangles all = chart_triangles(scene, simulation.mesh, map);
-  LightmapGlb glb(scene, provenance);
-  glb.add_vertices(all, true);
+  GlbFile glb(provenance, y_up(bounds(scene).center(), scene));
+  add_vertices(glb, all, scene, true);
   for (std::size_t m = 0; m < all.of_material.size(); ++m) {
     if (all.of_material[m].empty()) continue;
     const Material& material = scene.materials[m];
     glb.add_primitive(all.of_material[m], is_clear(material) ? glass(material, bands_of(scene))
                                                              : matt_material(material, bands_of(scene), 1));
   }
-  glb.write(file, "lightmap", {{"texCoord", 1}, {"file", "irradiance.exr"}, {"unit", "W/m^2"}});
+  glb.add_extra("lightmap", {{"texCoord", 1}, {"file", "irradiance.exr"}, {"unit", "W/m^2"}});
+  glb.write(file);
 }
 
 // The same with the light itself as colors for viewers: unlit (KHR_materials_unlit), the map's radiance exposed and
@@ -275,12 +179,11 @@ void write_baked_glb(const std::filesystem::path& file, const Scene& scene, cons
                      const Lightmap& map, const Provenance& provenance) {
   const ChartTriangles all = chart_triangles(scene, simulation.mesh, map);
   std::vector<std::uint32_t> light;
-  LightmapGlb glb(scene, provenance);
-  glb.add_vertices(all, false);
+  GlbFile glb(provenance, y_up(bounds(scene).center(), scene));
+  add_vertices(glb, all, scene, false);
   const std::string png = png_bytes(picture_of_map(map, map.radiance, provenance.exposure, bands_of(scene)));
   if (png.empty()) throw OutputError(file.string(), "the light cannot be encoded as PNG");
-  glb.add_picture(png);
-  const GltfJson unlit = {{"KHR_materials_unlit", GltfJson::object()}};
+  glb.add_picture(png);  // without smaller versions of it, in which charts would mix
   for (std::size_t m = 0; m < all.of_material.size(); ++m) {
     const Material& material = scene.materials[m];
     if (all.of_material[m].empty()) continue;
@@ -289,15 +192,15 @@ void write_baked_glb(const std::filesystem::path& file, const Scene& scene, cons
       continue;
     }
     GltfJson pane = glass(material, bands_of(scene));
-    pane["extensions"] = unlit;
+    pane["extensions"] = unlit();
     glb.add_primitive(all.of_material[m], std::move(pane));
   }
   if (!light.empty())
     glb.add_primitive(light, {{"name", "light"},
                               {"pbrMetallicRoughness",
                                {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-                              {"extensions", unlit}});
-  glb.write(file, "", nullptr);
+                              {"extensions", unlit()}});
+  glb.write(file);
 }
 
 namespace fs = std::filesystem;
