@@ -29,11 +29,6 @@
 namespace patchlight::cli {
 namespace {
 
-struct AnnualGiven {
-  ModelOptions model;
-  AnnualArguments arguments;
-};
-
 void take_hours(AnnualArguments& arguments, const std::string& text) {
   static const std::regex form(R"((\d{1,2})-(\d{1,2}))");
   std::smatch found;
@@ -45,7 +40,7 @@ void take_hours(AnnualArguments& arguments, const std::string& text) {
   throw refusal("--hours", text, "two hours from 0 to 24, the first below the second, e.g. 8-18");
 }
 
-AnnualArguments finish_annual(const AnnualGiven& given) {
+AnnualArguments finish_annual(const GivenOptions<AnnualArguments>& given) {
   AnnualArguments arguments = given.arguments;
   take_model(given.model, arguments);
   if (arguments.models.empty() || arguments.output.empty())
@@ -160,7 +155,7 @@ ExitCode exit_code_of(const AnnualLight& light) {
 }  // namespace
 
 Finish add_annual(CLI::App& tool) {
-  auto to = std::make_shared<AnnualGiven>();
+  auto to = std::make_shared<GivenOptions<AnnualArguments>>();
   CLI::App& command = *tool.add_subcommand("annual");
   AnnualArguments& arguments = to->arguments;
   Request& request = arguments.request;
@@ -181,7 +176,7 @@ Finish add_annual(CLI::App& tool) {
   return [to] { return finish_annual(*to); };
 }
 
-ExitCode annual(const AnnualArguments& arguments) {
+ExitCode run(const AnnualArguments& arguments) {
   check_annual_writable(arguments.output);
   const ThreadLimit limit(arguments.request.resources.threads);
   ProgressLine line(progress_shown(arguments.quiet));

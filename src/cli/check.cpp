@@ -291,7 +291,7 @@ std::string further_costs(const Plan& plan, const ExpectedCost& cost) {
 
 }  // namespace
 
-ExitCode check(const CheckArguments& arguments) {
+ExitCode run(const CheckArguments& arguments) {
   for (const OutputFile& output : outputs_of(arguments))
     if (!output.file.empty()) check_writable(output.file);
   const Scene scene = with_option_names(read_scene(arguments.models, arguments.read));
@@ -301,7 +301,7 @@ ExitCode check(const CheckArguments& arguments) {
   if (arguments.sides) report.sides = count_sides(scene, *arguments.sides);
 
   const WritingGuard guard;
-  if (!arguments.json.empty()) write_survey(arguments.json, scene, report);
+  if (!arguments.json.empty()) write_bytes(arguments.json, survey_json(scene, report));
   if (!arguments.problems.empty()) write_problems(arguments.problems, scene, report);
   if (!arguments.picture.file.empty()) write_model_picture(arguments, scene);
   if (arguments.json_on_stdout) {
@@ -318,7 +318,7 @@ ExitCode check(const CheckArguments& arguments) {
   return good;
 }
 
-ExitCode plan(const PlanArguments& arguments) {
+ExitCode run(const PlanArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
   const Scene scene = with_option_names(read_scene(arguments.models, arguments.read));
@@ -333,7 +333,7 @@ ExitCode plan(const PlanArguments& arguments) {
   const ExpectedCost cost = expected_cost(scene, plan, mesh.patches);
 
   const WritingGuard guard;
-  if (!arguments.json.empty()) write_plan(arguments.json, scene, plan, cost);
+  if (!arguments.json.empty()) write_bytes(arguments.json, plan_json(scene, plan, cost));
   print_notes(merged({remarks_of(scene), plan.sides.notes, plan.notes}), false);
   std::cout << shown_name(scene.file) << ": " << scene.polygons.size() << " polygons\n"
             << "effects of light\n"

@@ -6,40 +6,41 @@
 
 #include <span>
 
-// The commands. All may throw InputError, OutputError, MemoryError and `Canceled`.
+// Each function runs the command with these arguments. All may throw InputError, OutputError, MemoryError and
+// `Canceled`.
 namespace patchlight::cli {
 
 /// Reports the contents of a model and its problems. Returns input_error when the model cannot be solved.
-ExitCode check(const CheckArguments& arguments);
+ExitCode run(const CheckArguments& arguments);
 
 /// Writes a commented scene file for models.
-ExitCode init(const InitArguments& arguments);
+ExitCode run(const InitArguments& arguments);
 
 /// Reads, solves and writes all results at the end, each file atomically. `patchlight relight` solves without a model.
-ExitCode solve(const SolveArguments& arguments);
+ExitCode run(const SolveArguments& arguments);
 
 /// Renders images of a saved solution.
-ExitCode render(const RenderArguments& arguments);
+ExitCode run(const RenderArguments& arguments);
 
 /// A dry run: prints the effects that would be simulated, the reasons, and the expected cost.
-ExitCode plan(const PlanArguments& arguments);
+ExitCode run(const PlanArguments& arguments);
 
 /// Computes a year of daylight at sensors and writes a folder.
-ExitCode annual(const AnnualArguments& arguments);
+ExitCode run(const AnnualArguments& arguments);
 
 /// Solves, traces paths, and prints the largest differences. Returns validation_failed when they disagree.
-ExitCode crosscheck(const CrosscheckArguments& arguments);
+ExitCode run(const CrosscheckArguments& arguments);
 
 /// Writes the form factors between the patches of a model.
-ExitCode form_factors(const FormFactorArguments& arguments);
+ExitCode run(const FormFactorArguments& arguments);
 
 /// Solves a model with every solver.
-ExitCode compare_solvers(const ComparisonArguments& arguments);
+ExitCode run(const ComparisonArguments& arguments);
 
 /// Measures the cost of accuracy.
-ExitCode convergence(const ConvergenceArguments& arguments);
+ExitCode run(const ConvergenceArguments& arguments);
 
 /// Prints a table of cases with known answers. Returns validation_failed when one lies outside its error bar.
-ExitCode selftest(const SelftestArguments& arguments, std::span<const ValidationCase> cases);
+ExitCode run(const SelftestArguments& arguments, std::span<const ValidationCase> cases);
 
 }  // namespace patchlight::cli

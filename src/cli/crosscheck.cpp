@@ -23,7 +23,7 @@ namespace patchlight::cli {
 namespace {
 
 std::string position(const Point& point) {
-  return rounded(point.x(), 4) + ", " + rounded(point.y(), 4) + ", " + rounded(point.z(), 4);
+  return listed_as(point, [](double coordinate) { return rounded(coordinate, 4); });
 }
 
 // A checked patch in the band with the largest difference.
@@ -242,7 +242,7 @@ void tell(const CrosscheckArguments& arguments, const Scene& scene, const Simula
 
 }  // namespace
 
-ExitCode crosscheck(const CrosscheckArguments& arguments) {
+ExitCode run(const CrosscheckArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.request.resources.threads);
   print_note_on_accuracy(arguments.request, arguments.quiet);

@@ -153,12 +153,11 @@ std::string facts(const Scene& scene, const Comparison& comparison) {
 
 // Solvers that did not converge. Rows on demand have no closure, so that a larger deviation is no failure.
 std::string not_reached(const Comparison& comparison) {
-  std::string names;
+  std::vector<std::string> names;
   for (const SolverRun& run : comparison.runs) {
-    if (run.solution.converged || !keeps_entries(run.contestant.storage)) continue;
-    names += (names.empty() ? "" : ", ") + name_of(run.contestant);
+    if (!run.solution.converged && keeps_entries(run.contestant.storage)) names.push_back(name_of(run.contestant));
   }
-  return names;
+  return listed(names);
 }
 
 void write_page_of_comparison(const ComparisonArguments& arguments, const Scene& scene, const Comparison& comparison,
@@ -221,9 +220,17 @@ std::string facts(const Scene& scene, const Study& study) {
   return text.str();
 }
 
+// Reads the models of a command that writes a folder, and a page if one is asked for.
+Scene read_beside_results(const auto& arguments, const Observer& observer) {
+  Scene scene = read_models(arguments.models, arguments.read, observer);
+  require_not_read_from({"-o", arguments.output}, scene.inputs);
+  require_not_read({{"--html", arguments.page}}, scene.inputs);
+  return scene;
+}
+
 }  // namespace
 
-ExitCode form_factors(const FormFactorArguments& arguments) {
+ExitCode run(const FormFactorArguments& arguments) {
   if (is_one_file(arguments)) {
     check_writable(arguments.output);
   } else {
@@ -252,7 +259,7 @@ ExitCode form_factors(const FormFactorArguments& arguments) {
   return good;
 }
 
-ExitCode compare_solvers(const ComparisonArguments& arguments) {
+ExitCode run(const ComparisonArguments& arguments) {
   check_comparison_writable(arguments.output);
   if (!arguments.page.empty()) check_writable(arguments.page);
   const ThreadLimit limit(arguments.request.resources.threads);
@@ -260,9 +267,7 @@ ExitCode compare_solvers(const ComparisonArguments& arguments) {
   const Observer observer = observer_on(line);
 
   // 1. Read the model, run the solvers
-  const Scene scene = read_models(arguments.models, arguments.read, observer);
-  require_not_read_from({"-o", arguments.output}, scene.inputs);
-  require_not_read({{"--html", arguments.page}}, scene.inputs);
+  const Scene scene = read_beside_results(arguments, observer);
   Comparison comparison = patchlight::compare(scene, arguments.request, arguments.options, observer);
   comparison.simulation = with_option_names(std::move(comparison.simulation));
   const Simulation& simulation = comparison.simulation;
@@ -294,7 +299,7 @@ ExitCode compare_solvers(const ComparisonArguments& arguments) {
   return not_converged;
 }
 
-ExitCode convergence(const ConvergenceArguments& arguments) {
+ExitCode run(const ConvergenceArguments& arguments) {
   check_study_writable(arguments.output);
   if (!arguments.page.empty()) check_writable(arguments.page);
   const ThreadLimit limit(arguments.request.resources.threads);
@@ -302,9 +307,7 @@ ExitCode convergence(const ConvergenceArguments& arguments) {
   const Observer observer = observer_on(line);
 
   // 1. Read the model, solve it in many ways
-  const Scene scene = read_models(arguments.models, arguments.read, observer);
-  require_not_read_from({"-o", arguments.output}, scene.inputs);
-  require_not_read({{"--html", arguments.page}}, scene.inputs);
+  const Scene scene = read_beside_results(arguments, observer);
   const Study study = patchlight::study(scene, arguments.request, arguments.options, observer);
   line.hide();
   if (!study.trapped.empty()) {

@@ -1,9 +1,11 @@
 #include "cli/option_names.h"
+#include "cli/parse_value.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 namespace patchlight::cli {
 namespace {
@@ -90,12 +92,7 @@ std::string remark(const FormerName& name) {
 }
 
 void take_present_name(PresentNames& names, const FormerName& name, const Typed& typed) {
-  std::string_view rest = name.present;
-  for (std::size_t space = rest.find(' '); space != rest.npos; space = rest.find(' ')) {
-    names.words.emplace_back(rest.substr(0, space));
-    rest.remove_prefix(space + 1);
-  }
-  if (!rest.empty()) names.words.emplace_back(rest);
+  for (std::string& word : split(std::string(name.present))) names.words.push_back(std::move(word));
   if (typed.in_one && name.former == typed.option) names.words.back() += '=' + typed.value;
 }
 

@@ -292,7 +292,7 @@ TriedPlaces new_places(const Scene& lit) {
   return tried;
 }
 
-ExitCode init(const InitArguments& arguments) {
+ExitCode run(const InitArguments& arguments) {
   std::error_code error;
   if (std::filesystem::exists(arguments.output, error))
     throw OutputError(arguments.output.string(), "already exists\nhint: choose another name, or delete it");

@@ -44,9 +44,7 @@ CheckArguments finish_check(const CheckOptions& options) {
   CheckArguments arguments = options.arguments;
   take_model(options.model, arguments);
   arguments.json_on_stdout = arguments.json_on_stdout && arguments.json.empty();
-  if (arguments.models.empty()) throw UsageError("check: no model given\nhint: patchlight check MODEL");
-  if (!arguments.problems.empty() && arguments.problems.extension() != ".vtp")
-    throw refusal("--problems", arguments.problems.string(), "a name that ends in .vtp");
+  require_model(options.model, "check", "");
   const std::string& picture = options.picture.file;
   if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".hdr"))
     throw refusal("--picture", picture, "a name that ends in .png or .hdr");
@@ -58,18 +56,12 @@ CheckArguments finish_check(const CheckOptions& options) {
   return arguments;
 }
 
-struct InitOptions {
-  ModelOptions model;
-  std::string output;
-};
-
-InitArguments finish_init(const InitOptions& options) {
-  if (options.model.models.empty() || options.output.empty())
+InitArguments finish_init(const GivenOptions<InitArguments>& options) {
+  InitArguments arguments = options.arguments;
+  if (options.model.models.empty() || arguments.output.empty())
     throw UsageError(std::string("init: no ") + (options.model.models.empty() ? "model" : "-o SCENE.toml") +
                      " given\nhint: patchlight init MODEL -o SCENE.toml");
-  InitArguments arguments;
   take_model(options.model, arguments);
-  arguments.output = options.output;
   for (const path& model : arguments.models) {
     if (model == "-" || model.extension() == ".toml")
       throw UsageError("init: '" + model.string() + "' is no model file, which a scene file could name");
@@ -102,8 +94,7 @@ void require_checkpoint_of_rays(const SolveArguments& arguments) {
 }
 
 SolveArguments finish_solve(SolveOptions& options) {
-  if (options.model.models.empty())
-    throw UsageError("solve: no model given\nhint: patchlight solve MODEL -o RESULT.vtp");
+  require_model(options.model, "solve", " -o RESULT.vtp");
   take_model(options.model, options.arguments);
   SolveArguments arguments = with_solution(options, "solve");
   const bool in_series = !arguments.series.empty();
@@ -124,13 +115,8 @@ SolveArguments finish_relight(SolveOptions& options) {
   return arguments;
 }
 
-struct PlanOptions {
-  ModelOptions model;
-  PlanArguments arguments;
-};
-
-PlanArguments finish_plan(const PlanOptions& options) {
-  if (options.model.models.empty()) throw UsageError("plan: no model given\nhint: patchlight plan MODEL");
+PlanArguments finish_plan(const GivenOptions<PlanArguments>& options) {
+  require_model(options.model, "plan", "");
   PlanArguments arguments = options.arguments;
   take_model(options.model, arguments);
   arguments.request = with_fitting_solver(std::move(arguments.request), false);
@@ -163,22 +149,10 @@ std::string without_solution(const std::vector<std::string>& models) {
          " -o VIEW.png";
 }
 
-void add_render_options(CLI::App& command, RenderOptionsGiven& to) {
-  add(command, "--solution", to.arguments.solution, solution_named);
-  add_name(command, "-o,--output", to.picture.file, "the name of a file");
-  add_picture_options(command, to.picture);
-  add(command, "--difference", to.arguments.difference, solution_named);
-  add(command, "--observers", [&to](const std::string& text) {
-    if (!text.ends_with(".csv")) throw refusal("--observers", text, "a name that ends in .csv");
-    to.arguments.observers = text;
-  });
-}
-
 void require_consistent(const RenderOptionsGiven& options) {
   const RenderArguments& asked = options.arguments;
   const std::string& picture = options.picture.file;
-  if (options.model.models.empty())
-    throw UsageError("render: no model given\nhint: patchlight render MODEL --solution RESULT.vtp -o VIEW.png");
+  require_model(options.model, "render", " --solution RESULT.vtp -o VIEW.png");
   if (asked.solution.empty()) throw UsageError("render: " + without_solution(options.model.models));
   if (picture.empty() && asked.observers.empty() && asked.lightmap.folder.empty())
     throw UsageError("render: nothing would be written\nhint: -o VIEW.png, --observers FILE.csv or --lightmap FOLDER");
@@ -219,7 +193,7 @@ Finish add_check(CLI::App& tool) {
   add_sides_option(command, to->arguments.sides);
   add_flag(command, "--all", to->arguments.all);
   add_json_of_check(command, *to);
-  add(command, "--problems", [&to = *to](const std::string& text) { to.arguments.problems = text; });
+  add_ending(command, "--problems", to->arguments.problems, ".vtp");
   add(command, "--picture", [&to = *to](const std::string& text) { to.picture.file = text; });
   add_view_options(command, to->picture);
   add(command, "--ambient-occlusion", to->arguments.ambient_distance, length);
@@ -227,13 +201,10 @@ Finish add_check(CLI::App& tool) {
 }
 
 Finish add_init(CLI::App& tool) {
-  auto to = std::make_shared<InitOptions>();
+  auto to = std::make_shared<GivenOptions<InitArguments>>();
   CLI::App& command = *tool.add_subcommand("init");
   add_file_options(command, to->model);
-  add(command, "-o,--output", [&to = *to](const std::string& text) {
-    if (!text.ends_with(".toml")) throw refusal("-o", text, "a name that ends in .toml");
-    to.output = text;
-  });
+  add_ending(command, "-o,--output", to->arguments.output, ".toml");
   return [to] { return finish_init(*to); };
 }
 
@@ -241,18 +212,13 @@ Finish add_solve(CLI::App& tool) {
   auto to = std::make_shared<SolveOptions>();
   CLI::App& command = *tool.add_subcommand("solve");
   Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
+  add_run_options(command, to->model, request, effects_but({}));
   add_output_options(command, *to);
-  add_patch_options(command, to->model, request);
   add_graded_option(command, request);
   add_accuracy_options(command, request);
   add_method_options(command, request);
   add_stored_form_factors(command, to->arguments);
-  add_effect_options(command, request, effects_but({}));
   add_solver_options(command, to->arguments);
-  add_sampling_options(command, request);
-  add_machine_options(command, request);
   add_verbosity_options(command, to->arguments);
   return [to] { return finish_solve(*to); };
 }
@@ -273,20 +239,15 @@ Finish add_relight(CLI::App& tool) {
 }
 
 Finish add_plan(CLI::App& tool) {
-  auto to = std::make_shared<PlanOptions>();
+  auto to = std::make_shared<GivenOptions<PlanArguments>>();
   CLI::App& command = *tool.add_subcommand("plan");
   Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
+  add_run_options(command, to->model, request, effects_but({}));
   add_json_option(command, to->arguments.json);
-  add_patch_options(command, to->model, request);
   add_graded_option(command, request);
   add_accuracy_options(command, request);
   add_method_options(command, request);
   add_closure_option(command, request);
-  add_effect_options(command, request, effects_but({}));
-  add_sampling_options(command, request);
-  add_machine_options(command, request);
   return [to] { return finish_plan(*to); };
 }
 
@@ -294,7 +255,11 @@ Finish add_render(CLI::App& tool) {
   auto to = std::make_shared<RenderOptionsGiven>();
   CLI::App& command = *tool.add_subcommand("render");
   add_model_options(command, to->model);
-  add_render_options(command, *to);
+  add(command, "--solution", to->arguments.solution, solution_named);
+  add_name(command, "-o,--output", to->picture.file, "the name of a file");
+  add_picture_options(command, to->picture);
+  add(command, "--difference", to->arguments.difference, solution_named);
+  add_ending(command, "--observers", to->arguments.observers, ".csv");
   add_lightmap_options(command, to->arguments.lightmap);
   add_page_option(command, to->arguments.page);
   add_threads_option(command, to->arguments.threads);

@@ -28,27 +28,17 @@ void remark_on_former_names(int count, const char* const* values) {
   for (const std::string& remark : names.remarks) print_message("note", remark);
 }
 
-ExitCode run(int count, const char* const* values) {
+ExitCode run(const Information& information) {
+  (information.code == good ? std::cout : std::cerr) << information.text;
+  return information.code;
+}
+
+ExitCode run(const SelftestArguments& arguments) { return patchlight::cli::run(arguments, validation_cases()); }
+
+ExitCode run_command_line(int count, const char* const* values) {
   remark_on_former_names(count, values);
   const Arguments arguments = parse_arguments(count, values);
-  struct Run {
-    ExitCode operator()(const Information& information) const {
-      (information.code == good ? std::cout : std::cerr) << information.text;
-      return information.code;
-    }
-    ExitCode operator()(const CheckArguments& asked) const { return check(asked); }
-    ExitCode operator()(const InitArguments& asked) const { return init(asked); }
-    ExitCode operator()(const SolveArguments& asked) const { return solve(asked); }
-    ExitCode operator()(const RenderArguments& asked) const { return render(asked); }
-    ExitCode operator()(const PlanArguments& asked) const { return plan(asked); }
-    ExitCode operator()(const AnnualArguments& asked) const { return annual(asked); }
-    ExitCode operator()(const CrosscheckArguments& asked) const { return crosscheck(asked); }
-    ExitCode operator()(const FormFactorArguments& asked) const { return form_factors(asked); }
-    ExitCode operator()(const ComparisonArguments& asked) const { return compare_solvers(asked); }
-    ExitCode operator()(const ConvergenceArguments& asked) const { return convergence(asked); }
-    ExitCode operator()(const SelftestArguments& asked) const { return selftest(asked, validation_cases()); }
-  };
-  return std::visit(Run{}, arguments);
+  return std::visit([](const auto& asked) { return run(asked); }, arguments);
 }
 
 // The process limit of a user or container. TBB throws a runtime_error that names the function.
@@ -74,7 +64,7 @@ int main(int count, char** values) {
   std::signal(SIGPIPE, SIG_IGN);
   StandardOutput output;
   try {
-    const ExitCode code = run(count, values);
+    const ExitCode code = run_command_line(count, values);
     output.finish();
     return code;
   } catch (const UsageError& error) {

@@ -46,6 +46,12 @@ std::string visible(std::string_view character) {
   return is_c1 ? escaped("\\u%04x", static_cast<unsigned char>(character[1])) : std::string(character);
 }
 
+// Number of UTF-8 characters: continuation bytes do not count.
+std::size_t length_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
+}
+
 }  // namespace
 
 void print_message(const char* kind, const std::string& text) {
@@ -84,6 +90,25 @@ std::string shown_name(std::string_view name) {
   std::string result;
   for (const char letter : printable(name)) result += letter == '\n' ? std::string("\\u000a") : std::string(1, letter);
   return result;
+}
+
+std::string text_table(const std::vector<TextRow>& cells) {
+  std::vector<std::size_t> width(cells.front().size());
+  std::vector<TextRow> rows = cells;
+  for (TextRow& row : rows) {
+    for (std::string& cell : row) cell = shown_name(cell);
+  }
+  for (const TextRow& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column)
+      width[column] = std::max(width[column], length_of(row[column]));
+  }
+  std::string text;
+  for (const TextRow& row : rows) {
+    for (std::size_t column = 0; column + 1 < row.size(); ++column)
+      text += row[column] + std::string(width[column] + 2 - length_of(row[column]), ' ');
+    text += row.back() + '\n';
+  }
+  return text;
 }
 
 // Buffers output until it is flushed.

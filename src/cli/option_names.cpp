@@ -11,18 +11,13 @@
 namespace patchlight::cli {
 namespace {
 
-// Fields with a value come before fields without one.
+// Fields with one of their values come before the fields alone.
 const std::vector<OptionName>& usual_names() {
   static const std::vector<OptionName> names = {{"read.settings", "--set"},
-                                                {"read.up=", "--up "},
                                                 {"read.up", "--up"},
-                                                {"read.daylight.sky=", "--sky "},
                                                 {"read.daylight.sky", "--sky"},
-                                                {"read.daylight.sun=", "--sun "},
                                                 {"read.daylight.sun", "--sun"},
-                                                {"read.daylight.weather=", "--weather "},
                                                 {"read.daylight.weather", "--weather"},
-                                                {"read.daylight.ground=", "--ground "},
                                                 {"read.daylight.ground", "--ground"},
                                                 {"read.only", "--only"},
                                                 {"read.leave_out", "--exclude"},
@@ -33,10 +28,8 @@ const std::vector<OptionName>& usual_names() {
                                                 {"read.metres_per_unit=0.01", "--unit cm"},
                                                 {"read.metres_per_unit=1", "--unit m"},
                                                 {"read.metres_per_unit", "--unit"},
-                                                {"mesh.max_edge=", "--max-edge "},
                                                 {"mesh.max_edge", "--max-edge"},
                                                 {"mesh.patches", "--patches"},
-                                                {"mesh.sides=", "--sides "},
                                                 {"mesh.sides", "--sides"},
                                                 {"assembly.storage=on_demand", "--method on-demand"},
                                                 {"assembly.storage=on-demand", "--method on-demand"},
@@ -46,16 +39,14 @@ const std::vector<OptionName>& usual_names() {
                                                 {"assembly.storage", "--method"},
                                                 {"assembly.rays", "--rays"},
                                                 {"assembly.close=false", "--no-closure"},
-                                                {"assembly.estimator=", "--estimator "},
                                                 {"assembly.estimator", "--estimator"},
                                                 {"assembly.samples", "--samples"},
                                                 {"assembly.short_cuts", "--without"},
-                                                {"effects.force=", "--enable "},
-                                                {"effects.skip=", "--disable "},
-                                                {"solver.solver=", "--solver "},
+                                                {"effects.force", "--enable"},
+                                                {"effects.skip", "--disable"},
+                                                {"solver.solver", "--solver"},
                                                 {"solver.max_rows", "--max-rows"},
                                                 {"solver.relaxation", "--relaxation"},
-                                                {"accuracy.relative_error=", "--accuracy "},
                                                 {"accuracy.relative_error", "--accuracy"},
                                                 {"accuracy.seconds", "--time-limit"},
                                                 {"accuracy.interest", "--focus"},
@@ -87,8 +78,7 @@ bool ends_a_word(const std::string& text, std::size_t end) {
 const OptionName* name_at(const std::string& text, std::size_t begin, std::span<const OptionName> names) {
   if (!begins_a_word(text, begin)) return nullptr;
   const auto found = std::find_if(names.begin(), names.end(), [&](const OptionName& name) {
-    return text.compare(begin, name.field.size(), name.field) == 0 &&
-           (name.field.ends_with('=') || ends_a_word(text, begin + name.field.size()));
+    return text.compare(begin, name.field.size(), name.field) == 0 && ends_a_word(text, begin + name.field.size());
   });
   return found == names.end() ? nullptr : &*found;
 }
@@ -100,8 +90,14 @@ std::string with_option_names(const std::string& text, std::span<const OptionNam
   for (std::size_t k = 0; k < text.size();) {
     const OptionName* name = name_at(text, k, other);
     if (name == nullptr) name = name_at(text, k, usual_names());
-    result += name != nullptr ? name->option : std::string(1, text[k]);
-    k += name != nullptr ? name->field.size() : 1;
+    if (name == nullptr) {
+      result += text[k++];
+      continue;
+    }
+    result += name->option;
+    k += name->field.size();
+    // "--sides both" in place of "mesh.sides=both"
+    if (k < text.size() && text[k] == '=') result += ' ', ++k;
   }
   return result;
 }

@@ -178,6 +178,11 @@ void add_effects(CLI::App& command, const std::string& option, const std::vector
 
 }  // namespace
 
+void require_model(const ModelOptions& options, const std::string& command, const std::string& rest) {
+  if (options.models.empty())
+    throw UsageError(command + ": no model given\nhint: patchlight " + command + " MODEL" + rest);
+}
+
 void add_file_options(CLI::App& command, ModelOptions& options) {
   std::vector<std::pair<std::string, std::string>> formats;
   for (const std::string& format : readable_formats()) formats.emplace_back(format, format);
@@ -262,6 +267,15 @@ void add_method_options(CLI::App& command, Request& request, bool stored) {
     request.assembly.rays = static_cast<int>(whole_number("--rays", text, 16, 4096));
     if (request.assembly.storage == Storage::automatic) request.assembly.storage = Storage::rays;
   });
+}
+
+void add_run_options(CLI::App& command, ModelOptions& options, Request& request, const std::vector<Effect>& effects) {
+  add_model_options(command, options);
+  add_sides_option(command, request.mesh.sides);
+  add_effect_options(command, request, effects);
+  add_patch_options(command, options, request);
+  add_sampling_options(command, request);
+  add_machine_options(command, request);
 }
 
 Request with_fitting_solver(Request request, bool solver_given) {

@@ -95,6 +95,16 @@ struct ModelOptions {
   bool max_edge_in_metres = false;  ///< --max-edge has its own unit; otherwise it uses the unit of the model
 };
 
+/// The options of a command during parsing: its model, and its arguments without the model.
+template <typename Arguments>
+struct GivenOptions {
+  ModelOptions model;
+  Arguments arguments;
+};
+
+/// \throws UsageError when a command got no model; `rest` completes its usage in the hint.
+void require_model(const ModelOptions& options, const std::string& command, const std::string& rest);
+
 /// Adds the arguments for files and units.
 void add_file_options(CLI::App& command, ModelOptions& options);
 
@@ -120,6 +130,10 @@ void add_sides_option(CLI::App& command, To& sides) {
   add_choice<Sides>(command, "--sides", sides,
                     {{"auto", Sides::automatic}, {"front", Sides::front}, {"both", Sides::both}});
 }
+
+/// Adds the options that all commands with a mesh share: those of the model, --sides, --enable and --disable of these
+/// effects, patches, samples, and the machine.
+void add_run_options(CLI::App& command, ModelOptions& options, Request& request, const std::vector<Effect>& effects);
 
 void add_patch_options(CLI::App& command, ModelOptions& options, Request& request);  ///< --max-edge, --patches, ...
 void add_graded_option(CLI::App& command, Request& request);       ///< not if meshes are halved in sequence

@@ -108,13 +108,6 @@ std::filesystem::path with_view(const std::filesystem::path& file, const std::st
   return file.parent_path() / (file.stem().string() + '.' + name + file.extension().string());
 }
 
-void add_ending(CLI::App& command, const std::string& name, path& file, const std::string& ending) {
-  add(command, name, file, [ending](const std::string& option, const std::string& text) {
-    if (path(text).extension() != ending) throw refusal(option, text, "a name that ends in " + ending);
-    return text;
-  });
-}
-
 void require_extension(const std::string& option, const std::string& file, const std::vector<std::string>& allowed) {
   std::string words;
   for (const std::string& extension : allowed) {
@@ -216,7 +209,7 @@ void add_picture_options(CLI::App& command, PictureGiven& given) {
     if (!std::has_single_bit(samples)) throw refusal("--picture-samples", text, "a power of two, e.g. 128 or 256");
     given.most_samples = static_cast<int>(samples);
   });
-  add_name(command, "--picture-error-map", given.error_map, "the name of a file");
+  add_ending(command, "--picture-error-map", given.error_map, ".png");
 }
 
 PictureSettings picture_settings(const PictureGiven& given, const std::string& file_option, PictureQuality usual) {
@@ -238,8 +231,6 @@ PictureSettings picture_settings(const PictureGiven& given, const std::string& f
   if (!given.file.empty() &&
       std::find(extensions.begin(), extensions.end(), settings.file.extension()) == extensions.end())
     throw UsageError(file_option + ": found '" + given.file + "'; expected a name that ends in .png, .hdr or .exr");
-  if (!given.error_map.empty() && settings.error_map.extension() != ".png")
-    throw UsageError("--picture-error-map: found '" + given.error_map + "'; expected a name that ends in .png");
   if (settings.quality == PictureQuality::draft && (given.error || given.most_samples || !given.error_map.empty()))
     throw UsageError(std::string(given.error          ? "--picture-error"
                                  : given.most_samples ? "--picture-samples"
@@ -294,6 +285,13 @@ std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings)
          rounded(100 * map.texel) + " cm, " + (is_coarser ? "smaller ones do not fit into the largest map, " : "") +
          std::to_string(map.charts.size()) + (map.charts.size() == 1 ? " chart, " : " charts, ") +
          rounded(static_cast<double>(bytes_of(map)) / 1e6) + " MB of memory\n";
+}
+
+void add_ending(CLI::App& command, const std::string& name, path& file, const std::string& ending) {
+  add(command, name, file, [ending](const std::string& option, const std::string& text) {
+    if (path(text).extension() != ending) throw refusal(option, text, "a name that ends in " + ending);
+    return text;
+  });
 }
 
 void add_json_option(CLI::App& command, path& json) { add_ending(command, "--json", json, ".json"); }

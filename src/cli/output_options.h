@@ -20,7 +20,8 @@ inline constexpr const char* camera_example = "--camera 4,-3,1.6 0,0,1 60";
 
 /// The options of an image, during parsing.
 struct PictureGiven {
-  std::string file, error_map;
+  std::string file;
+  std::filesystem::path error_map;
   std::vector<std::string> views;
   std::optional<Camera> camera;  ///< model units
   std::optional<Projection> projection;
@@ -61,6 +62,9 @@ void require_outside_lightmap(const LightmapSettings& settings, const std::vecto
 
 /// One line about a lightmap: size, texels, the reason if they are larger than requested, charts and memory.
 std::string lightmap_line(const Lightmap& map, const LightmapSettings& settings);
+
+/// Adds an option with a file whose name has this ending, e.g. ".json".
+void add_ending(CLI::App& command, const std::string& name, std::filesystem::path& file, const std::string& ending);
 
 /// Adds --json with one file (.json).
 void add_json_option(CLI::App& command, std::filesystem::path& json);

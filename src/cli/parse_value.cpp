@@ -1,11 +1,10 @@
 #include "cli/parse_value.h"
 
 #include "base/words.h"
+#include "input/text.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <span>
 
 namespace patchlight::cli {
@@ -32,11 +31,7 @@ std::optional<double> quantity(const std::string& text, std::span<const Unit> un
 }  // namespace
 
 std::optional<double> to_number(const std::string& text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
+  return text.starts_with('+') ? std::nullopt : finite_number(text);
 }
 
 std::vector<std::string> split(const std::string& text) {
@@ -64,13 +59,9 @@ double number(const std::string& option, const std::string& text, const std::str
 
 std::uint64_t whole_number(const std::string& option, const std::string& text, std::uint64_t lower,
                            std::uint64_t upper) {
-  std::uint64_t value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || value < lower || value > upper) {
-    throw refusal(option, text, "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
-  }
-  return value;
+  const auto value = whole_number_in<std::uint64_t>(text);
+  if (value && *value >= lower && *value <= upper) return *value;
+  throw refusal(option, text, "a whole number from " + std::to_string(lower) + " to " + std::to_string(upper));
 }
 
 double bytes(const std::string& option, const std::string& text) {

@@ -24,27 +24,11 @@ std::string percent_of(double share) { return std::to_string(std::lround(100 * s
 
 // The typical work of a stage, in percent of a run with all stages of one mesh.
 double weight_of(Stage stage) {
-  switch (stage) {
-    case Stage::form_factors:
-      return 25;
-    case Stage::direct_light:
-    case Stage::solve:
-      return 5;
-    case Stage::error_bars:
-      return 50;
-    case Stage::gather:
-      return 10;
-    case Stage::trace_paths:
-    case Stage::render:
-      return 60;
-    case Stage::read:
-    case Stage::plan:
-    case Stage::mesh:
-    case Stage::closure:
-    case Stage::write:
-      return 1;
-  }
-  return 0;
+  if (stage == Stage::trace_paths || stage == Stage::render) return 60;
+  if (stage == Stage::error_bars) return 50;
+  if (stage == Stage::form_factors) return 25;
+  if (stage == Stage::gather) return 10;
+  return stage == Stage::direct_light || stage == Stage::solve ? 5 : 1;
 }
 
 bool is_of_mesh(Stage stage) { return stage >= Stage::mesh && stage <= Stage::error_bars; }

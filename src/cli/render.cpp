@@ -149,7 +149,7 @@ void write_picture_file(const std::filesystem::path& file, const Picture& pictur
   write_picture(file, picture, picture_up(picture.camera, scene.up, scene.north), bands_of(scene));
 }
 
-ExitCode render(const RenderArguments& arguments) {
+ExitCode run(const RenderArguments& arguments) {
   // 1. Refuse outputs that cannot be written or would be lost
   std::vector<PictureSettings> wanted = single_pictures(arguments.picture);
   if (!arguments.observers.empty()) check_writable(arguments.observers);

@@ -18,39 +18,15 @@
 namespace patchlight::cli {
 namespace {
 
-// Options shared by these commands.
-template <typename Arguments>
-struct ResearchOptions {
-  ModelOptions model;
-  Arguments arguments;
-};
-
-template <typename Options>
-void require_model(const Options& options, const std::string& command, const std::string& output) {
-  if (options.model.models.empty())
-    throw UsageError(command + ": no model given\nhint: patchlight " + command + " MODEL" + output);
-}
-
 template <typename Arguments>
 void add_output_option(CLI::App& command, Arguments& arguments) {
   add(command, "-o,--output", [&arguments](const std::string& text) { arguments.output = text; });
 }
 
-using CrosscheckOptions = ResearchOptions<CrosscheckArguments>;
-
-void add_crosscheck_options(CLI::App& command, CrosscheckArguments& to) {
-  add_whole(command, "--paths", to.options.paths, 1, 1U << 22U);
-  add_whole(command, "--sample-patches", to.options.checked, 1, 1'000'000'000);
-  add(command, "--margin", [&to](const std::string& text) {
-    const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
-    const auto inside = [](double x) { return x >= 0 && x <= 100; };
-    to.bar = number("--margin", digits, "a percentage from 0 to 100", inside) / 100;
-  });
-  add_json_option(command, to.json);
-}
+using CrosscheckOptions = GivenOptions<CrosscheckArguments>;
 
 CrosscheckArguments finish_crosscheck(const CrosscheckOptions& options) {
-  require_model(options, "crosscheck", "");
+  require_model(options.model, "crosscheck", "");
   CrosscheckArguments arguments = options.arguments;
   take_model(options.model, arguments);
   arguments.options.seed = arguments.request.assembly.seed;
@@ -71,26 +47,9 @@ CrosscheckArguments finish_crosscheck(const CrosscheckOptions& options) {
   return arguments;
 }
 
-struct FormFactorOptions : ResearchOptions<FormFactorArguments> {
+struct FormFactorOptions : GivenOptions<FormFactorArguments> {
   std::optional<MatrixFormat> format;
 };
-
-void add_form_factor_options(CLI::App& command, FormFactorOptions& to) {
-  add_output_option(command, to.arguments);
-  add_choice<MatrixFormat>(command, "--matrix", to.format,
-                           {{"npy", MatrixFormat::npy}, {"mtx", MatrixFormat::matrix_market}});
-  add_choice<GroupBy>(command, "--by", to.arguments.by, {{"material", GroupBy::material}, {"object", GroupBy::object}});
-  option_text("form-factors", "--without");
-  const auto switch_off = [&short_cuts =
-                               to.arguments.request.assembly.short_cuts](const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      short_cuts.*choice<bool ShortCuts::*>(
-                      "--without", name,
-                      {{"hidden", &ShortCuts::hidden}, {"free", &ShortCuts::free}, {"far", &ShortCuts::far}}) = false;
-    }
-  };
-  command.add_option_function<std::vector<std::string>>("--without", switch_off)->allow_extra_args(false);
-}
 
 // A matrix and tables of groups require the pair method.
 void require_pairs(const FormFactorOptions& options) {
@@ -113,7 +72,7 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
     arguments.request.solver.solver = Solver::gmres;
   }
   check(arguments.request);
-  require_model(options, "form-factors", " -o FOLDER");
+  require_model(options.model, "form-factors", " -o FOLDER");
   if (arguments.output.empty())
     throw UsageError("form-factors: nothing would be written\nhint: -o FOLDER, or -o FILE.npy for the matrix alone");
   const std::filesystem::path extension = arguments.output.extension();
@@ -131,8 +90,8 @@ FormFactorArguments finish_form_factors(const FormFactorOptions& options) {
 
 // Finishes commands that write a folder and an optional page beside it.
 template <typename Arguments>
-Arguments finished_folder(const ResearchOptions<Arguments>& options, const std::string& command) {
-  require_model(options, command, " -o FOLDER");
+Arguments finished_folder(const GivenOptions<Arguments>& options, const std::string& command) {
+  require_model(options.model, command, " -o FOLDER");
   Arguments arguments = options.arguments;
   take_model(options.model, arguments);
   if (arguments.output.empty()) throw UsageError(command + ": nothing would be written\nhint: -o FOLDER");
@@ -141,7 +100,7 @@ Arguments finished_folder(const ResearchOptions<Arguments>& options, const std::
   return arguments;
 }
 
-using ComparisonOptions = ResearchOptions<ComparisonArguments>;
+using ComparisonOptions = GivenOptions<ComparisonArguments>;
 
 std::vector<Contestant> contestants(const std::string& option, const std::string& text) {
   std::vector<std::pair<std::string, Contestant>> allowed;
@@ -158,34 +117,13 @@ std::vector<Contestant> contestants(const std::string& option, const std::string
   return chosen;
 }
 
-void add_comparison_options(CLI::App& command, ComparisonArguments& to) {
-  CompareOptions& compare = to.options;
-  add_output_option(command, to);
-  add_page_option(command, to.page);
-  add(command, "--solvers", compare.contestants, contestants);
-  add_tolerance_option(command, 1e-9, compare.relative_error);
-  add_whole(command, "--max-iterations", compare.max_iterations, 1, 1'000'000);
-  add_flag(command, "--no-series", compare.keep_iterates, false);
-  add_closure_option(command, to.request);
-  add_relaxation_option(command, compare.relaxation);
-}
-
 ComparisonArguments finish_comparison(const ComparisonOptions& options) {
   ComparisonArguments arguments = finished_folder(options, "compare-solvers");
   check(arguments.request, arguments.options);
   return arguments;
 }
 
-using ConvergenceOptions = ResearchOptions<ConvergenceArguments>;
-
-void add_convergence_options(CLI::App& command, ConvergenceArguments& to) {
-  add_output_option(command, to);
-  add_page_option(command, to.page);
-  add_whole(command, "--sizes", to.options.sizes, 2, 8);
-  add_tolerance_option(command, 1e-10, to.request.solver.relative_error);
-  add_flag(command, "--no-adaptive", to.options.adaptive, false);
-  add_flag(command, "--no-estimators", to.options.estimators, false);
-}
+using ConvergenceOptions = GivenOptions<ConvergenceArguments>;
 
 ConvergenceArguments finish_convergence(const ConvergenceOptions& options) {
   ConvergenceArguments arguments = finished_folder(options, "convergence");
@@ -198,68 +136,84 @@ ConvergenceArguments finish_convergence(const ConvergenceOptions& options) {
 Finish add_crosscheck(CLI::App& tool) {
   auto to = std::make_shared<CrosscheckOptions>();
   CLI::App& command = *tool.add_subcommand("crosscheck");
-  Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
-  add_effect_options(command, request, effects_but({}));
-  add_crosscheck_options(command, to->arguments);
-  add_patch_options(command, to->model, request);
+  auto& arguments = to->arguments;
+  Request& request = arguments.request;
+  add_run_options(command, to->model, request, effects_but({}));
+  add_whole(command, "--paths", arguments.options.paths, 1, 1U << 22U);
+  add_whole(command, "--sample-patches", arguments.options.checked, 1, 1'000'000'000);
+  add(command, "--margin", [&arguments](const std::string& text) {
+    const std::string digits = text.ends_with('%') ? text.substr(0, text.size() - 1) : text;
+    const auto inside = [](double x) { return x >= 0 && x <= 100; };
+    arguments.bar = number("--margin", digits, "a percentage from 0 to 100", inside) / 100;
+  });
+  add_json_option(command, arguments.json);
   add_graded_option(command, request);
   add_refinement_options(command, request);
-  add_sampling_options(command, request);
   add_method_options(command, request);
   add_closure_option(command, request);
-  add_machine_options(command, request);
-  add_quiet_option(command, to->arguments.quiet);
+  add_quiet_option(command, arguments.quiet);
   return [to] { return finish_crosscheck(*to); };
 }
 
 Finish add_form_factors(CLI::App& tool) {
   auto to = std::make_shared<FormFactorOptions>();
   CLI::App& command = *tool.add_subcommand("form-factors");
-  Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
-  add_effect_options(command, request, {Effect::reach, Effect::backs});
-  add_form_factor_options(command, *to);
+  auto& arguments = to->arguments;
+  Request& request = arguments.request;
+  add_run_options(command, to->model, request, {Effect::reach, Effect::backs});
+  add_output_option(command, arguments);
+  add_choice<MatrixFormat>(command, "--matrix", to->format,
+                           {{"npy", MatrixFormat::npy}, {"mtx", MatrixFormat::matrix_market}});
+  add_choice<GroupBy>(command, "--by", arguments.by, {{"material", GroupBy::material}, {"object", GroupBy::object}});
+  option_text("form-factors", "--without");
+  const auto switch_off = [&short_cuts = request.assembly.short_cuts](const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      short_cuts.*choice<bool ShortCuts::*>(
+                      "--without", name,
+                      {{"hidden", &ShortCuts::hidden}, {"free", &ShortCuts::free}, {"far", &ShortCuts::far}}) = false;
+    }
+  };
+  command.add_option_function<std::vector<std::string>>("--without", switch_off)->allow_extra_args(false);
   add_closure_option(command, request);
-  add_patch_options(command, to->model, request);
   add_graded_option(command, request);
   add_method_options(command, request, true);
-  add_sampling_options(command, request);
-  add_machine_options(command, request);
-  add_quiet_option(command, to->arguments.quiet);
+  add_quiet_option(command, arguments.quiet);
   return [to] { return finish_form_factors(*to); };
 }
 
 Finish add_compare_solvers(CLI::App& tool) {
   auto to = std::make_shared<ComparisonOptions>();
   CLI::App& command = *tool.add_subcommand("compare-solvers");
-  Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
-  add_effect_options(command, request, effects_but({Effect::interreflection}));
-  add_comparison_options(command, to->arguments);
-  add_patch_options(command, to->model, request);
+  auto& arguments = to->arguments;
+  Request& request = arguments.request;
+  add_run_options(command, to->model, request, effects_but({Effect::interreflection}));
+  CompareOptions& compare = arguments.options;
+  add_output_option(command, arguments);
+  add_page_option(command, arguments.page);
+  add(command, "--solvers", compare.contestants, contestants);
+  add_tolerance_option(command, 1e-9, compare.relative_error);
+  add_whole(command, "--max-iterations", compare.max_iterations, 1, 1'000'000);
+  add_flag(command, "--no-series", compare.keep_iterates, false);
+  add_closure_option(command, request);
+  add_relaxation_option(command, compare.relaxation);
   add_graded_option(command, request);
-  add_sampling_options(command, request);
-  add_machine_options(command, request);
-  add_quiet_option(command, to->arguments.quiet);
+  add_quiet_option(command, arguments.quiet);
   return [to] { return finish_comparison(*to); };
 }
 
 Finish add_convergence(CLI::App& tool) {
   auto to = std::make_shared<ConvergenceOptions>();
   CLI::App& command = *tool.add_subcommand("convergence");
-  Request& request = to->arguments.request;
-  add_model_options(command, to->model);
-  add_sides_option(command, request.mesh.sides);
-  add_effect_options(command, request, effects_but({Effect::interreflection}));
-  add_convergence_options(command, to->arguments);
-  add_patch_options(command, to->model, request);
-  add_sampling_options(command, request);
-  add_machine_options(command, request);
-  add_quiet_option(command, to->arguments.quiet);
+  auto& arguments = to->arguments;
+  Request& request = arguments.request;
+  add_run_options(command, to->model, request, effects_but({Effect::interreflection}));
+  add_output_option(command, arguments);
+  add_page_option(command, arguments.page);
+  add_whole(command, "--sizes", arguments.options.sizes, 2, 8);
+  add_tolerance_option(command, 1e-10, request.solver.relative_error);
+  add_flag(command, "--no-adaptive", arguments.options.adaptive, false);
+  add_flag(command, "--no-estimators", arguments.options.estimators, false);
+  add_quiet_option(command, arguments.quiet);
   return [to] { return finish_convergence(*to); };
 }
 

@@ -34,7 +34,7 @@ std::string table(const std::vector<ValidationResult>& results) {
 }
 
 // Runs the cases in sequence and reports the current one.
-std::vector<ValidationResult> run(std::span<const ValidationCase> cases) {
+std::vector<ValidationResult> results_of(std::span<const ValidationCase> cases) {
   ProgressLine line(progress_shown(false));
   std::vector<ValidationResult> results;
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -46,15 +46,15 @@ std::vector<ValidationResult> run(std::span<const ValidationCase> cases) {
 
 }  // namespace
 
-ExitCode selftest(const SelftestArguments& arguments, std::span<const ValidationCase> cases) {
+ExitCode run(const SelftestArguments& arguments, std::span<const ValidationCase> cases) {
   if (!arguments.json.empty()) check_writable(arguments.json);
   const ThreadLimit limit(arguments.threads);
   const double begin = wall_seconds();
-  const std::vector<ValidationResult> results = run(cases);
+  const std::vector<ValidationResult> results = results_of(cases);
   const double seconds = wall_seconds() - begin;
 
   const WritingGuard guard;
-  if (!arguments.json.empty()) write_validation(arguments.json, results);
+  if (!arguments.json.empty()) write_bytes(arguments.json, validation_json(results));
   const auto outside = std::count_if(results.begin(), results.end(), [](const auto& r) { return !within_bar(r); });
   if (arguments.json_on_stdout) {
     std::cout << validation_json(results) << std::flush;

@@ -370,7 +370,7 @@ ExitCode exit_code_of(const Report& report) {
 
 }  // namespace
 
-ExitCode solve(const SolveArguments& arguments) {
+ExitCode run(const SolveArguments& arguments) {
   check_outputs(arguments);
   Checkpoint checkpoint = arguments.checkpoint.empty() ? Checkpoint() : Checkpoint(arguments.checkpoint);
 

@@ -113,6 +113,16 @@ Json part_of(const VerifiedPart& part) {
           {"width", part.width}};
 }
 
+// A row of a comparison with traced paths, in all bands.
+Json compared_part(const SolvedAndTraced& compared, const Field& z, const Field& with_bar, Eigen::Index i) {
+  return {{"irradiance_W_m2", row(compared.irradiance, i)},
+          {"bar_W_m2", row(compared.bar, i)},
+          {"traced_W_m2", row(compared.paths.irradiance, i)},
+          {"standard_error_W_m2", row(compared.paths.standard_error, i)},
+          {"z", row(z, i)},
+          {"z_with_bar", row(with_bar, i)}};
+}
+
 Json checked_part(const Scene& scene, const PatchMesh& mesh, const Verification& verification) {
   Json part = Json::array();
   const Field z = deviations_by_noise(verification);
@@ -120,7 +130,6 @@ Json checked_part(const Scene& scene, const PatchMesh& mesh, const Verification&
   for (std::size_t k = 0; k < verification.patches.size(); ++k) {
     const PatchIndex patch = verification.patches[k];
     const Polygon& polygon = scene.polygons[mesh.polygon[patch]];
-    const auto i = static_cast<Eigen::Index>(k);
     part.push_back({{"patch", patch},
                     {"place", place_of(scene, polygon)},
                     {"source_polygon", polygon.face},
@@ -128,13 +137,8 @@ Json checked_part(const Scene& scene, const PatchMesh& mesh, const Verification&
                     {"material", scene.materials[mesh.material[patch]].name},
                     {"side", name_of(mesh.side[patch])},
                     {"centre_m", list(mesh.centroid[patch])},
-                    {"area_m2", mesh.area[patch]},
-                    {"irradiance_W_m2", row(verification.irradiance, i)},
-                    {"bar_W_m2", row(verification.bar, i)},
-                    {"traced_W_m2", row(verification.paths.irradiance, i)},
-                    {"standard_error_W_m2", row(verification.paths.standard_error, i)},
-                    {"z", row(z, i)},
-                    {"z_with_bar", row(with_bar, i)}});
+                    {"area_m2", mesh.area[patch]}});
+    part.back().update(compared_part(verification, z, with_bar, static_cast<Eigen::Index>(k)));
   }
   return part;
 }
@@ -147,14 +151,8 @@ Json family_of(const VerifiedFamily& family) {
   const Field z = deviations_by_noise(family.compared);
   const Field with_bar = deviations(family.compared);
   for (std::size_t k = 0; k < family.names.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    json["rows"].push_back({{"name", family.names[k]},
-                            {"irradiance_W_m2", row(family.compared.irradiance, i)},
-                            {"bar_W_m2", row(family.compared.bar, i)},
-                            {"traced_W_m2", row(family.compared.paths.irradiance, i)},
-                            {"standard_error_W_m2", row(family.compared.paths.standard_error, i)},
-                            {"z", row(z, i)},
-                            {"z_with_bar", row(with_bar, i)}});
+    json["rows"].push_back({{"name", family.names[k]}});
+    json["rows"].back().update(compared_part(family.compared, z, with_bar, static_cast<Eigen::Index>(k)));
   }
   return json;
 }
@@ -202,10 +200,6 @@ std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& 
   return json_text(json);
 }
 
-void write_plan(const std::filesystem::path& file, const Scene& scene, const Plan& plan, const ExpectedCost& cost) {
-  write_bytes(file, plan_json(scene, plan, cost));
-}
-
 std::string survey_json(const Scene& scene, const SceneReport& report) {
   Json json;
   json["version"] = version();
@@ -241,10 +235,6 @@ std::string survey_json(const Scene& scene, const SceneReport& report) {
   return json_text(json);
 }
 
-void write_survey(const std::filesystem::path& file, const Scene& scene, const SceneReport& report) {
-  write_bytes(file, survey_json(scene, report));
-}
-
 std::string validation_json(std::span<const ValidationResult> results) {
   Json json;
   json["version"] = version();
@@ -252,10 +242,6 @@ std::string validation_json(std::span<const ValidationResult> results) {
   json["cases"] = Json::array();
   for (const ValidationResult& result : results) json["cases"].push_back(case_part(result));
   return json_text(json);
-}
-
-void write_validation(const std::filesystem::path& file, std::span<const ValidationResult> results) {
-  write_bytes(file, validation_json(results));
 }
 
 void write_verification(const std::filesystem::path& file, const Scene& scene, const Simulation& simulation,

@@ -18,20 +18,11 @@ namespace patchlight {
 /// The plan of a run and its expected cost, as JSON. docs/reference/outputs/report-json.md lists the keys.
 std::string plan_json(const Scene& scene, const Plan& plan, const ExpectedCost& cost);
 
-/// The same as a file. \throws OutputError.
-void write_plan(const std::filesystem::path& file, const Scene& scene, const Plan& plan, const ExpectedCost& cost);
-
 /// The contents of a scene and its problems as JSON. Each problem lists at most 1,000 faces.
 std::string survey_json(const Scene& scene, const SceneReport& report);
 
-/// The same as a file. \throws OutputError.
-void write_survey(const std::filesystem::path& file, const Scene& scene, const SceneReport& report);
-
 /// The outcome of a validation as JSON. docs/reference/outputs/report-json.md lists the keys.
 std::string validation_json(std::span<const ValidationResult> results);
-
-/// The same as a file. \throws OutputError.
-void write_validation(const std::filesystem::path& file, std::span<const ValidationResult> results);
 
 /// The outcome of a verification as a JSON file; docs/reference/outputs/report-json.md lists the keys. \throws
 /// OutputError.

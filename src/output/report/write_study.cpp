@@ -226,19 +226,8 @@ std::string table(const Study& study) {
 }
 
 const char* name_of(Finding finding) {
-  switch (finding) {
-    case Finding::interpolated:
-      return "interpolated";
-    case Finding::at_most:
-      return "at most";
-    case Finding::extrapolated:
-      return "extrapolated";
-    case Finding::not_reached:
-      return "not reached";
-    case Finding::not_known:
-      return "not known";
-  }
-  return "";
+  constexpr std::array names = {"interpolated", "at most", "extrapolated", "not reached", "not known"};
+  return names.at(static_cast<std::size_t>(finding));
 }
 
 Json price_part(double error, const Study& study) {

@@ -12,7 +12,7 @@ std::vector<ValidationCase> quarter(double exact) {
 
 TEST(Selftest, AGoodTableEndsGood) {
   testing::internal::CaptureStdout();
-  EXPECT_EQ(selftest({}, quarter(0.255)), good);
+  EXPECT_EQ(run(SelftestArguments{}, quarter(0.255)), good);
   const std::string table = testing::internal::GetCapturedStdout();
   EXPECT_NE(table.find("good"), std::string::npos);
   EXPECT_NE(table.find("1 cases, 0 outside"), std::string::npos);
@@ -20,7 +20,7 @@ TEST(Selftest, AGoodTableEndsGood) {
 
 TEST(Selftest, ACaseOutsideItsBarEndsWithFive) {
   testing::internal::CaptureStdout();
-  const ExitCode code = selftest({}, quarter(0.27));
+  const ExitCode code = run(SelftestArguments{}, quarter(0.27));
   EXPECT_EQ(code, validation_failed);
   EXPECT_EQ(int{code}, 5);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("OUTSIDE"), std::string::npos);
@@ -30,7 +30,7 @@ TEST(Selftest, JsonSaysSoToo) {
   testing::internal::CaptureStdout();
   SelftestArguments arguments;
   arguments.json_on_stdout = true;
-  EXPECT_EQ(selftest(arguments, quarter(0.27)), validation_failed);
+  EXPECT_EQ(run(arguments, quarter(0.27)), validation_failed);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("\"sound\": false"), std::string::npos);
 }
 

@@ -4,7 +4,6 @@
 #include "support/scenes.h"
 #include "temporary_folder.h"
 
-#include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <vtkCellData.h>
@@ -53,7 +52,6 @@ TEST(WriteProblems, MarksBadFacesAndKeepsTheOthers) {
 }
 
 TEST(SurveyJson, HoldsTheReport) {
-  const TemporaryFolder folder;
   const Scene scene = messy_cube();
   const SceneReport report = survey(scene);
   const nlohmann::json json = nlohmann::json::parse(survey_json(scene, report));
@@ -68,10 +66,6 @@ TEST(SurveyJson, HoldsTheReport) {
   EXPECT_EQ(json["problems"][0]["count"], 1);
   EXPECT_EQ(json["problems"][0]["faces"][0]["line"], 7);
   EXPECT_EQ(json["problems"][1]["kind"], "zero_area");
-
-  write_survey(folder.path() / "check.json", scene, report);
-  std::ifstream file(folder.path() / "check.json");
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), survey_json(scene, report));
 }
 
 }  // namespace
