@@ -1,35 +1,13 @@
 #include "patchlight/base/progress.h"
 
+#include <array>
+
 namespace patchlight {
 
 const char* name_of(Stage stage) {
-  switch (stage) {
-    case Stage::read:
-      return "read";
-    case Stage::plan:
-      return "plan";
-    case Stage::mesh:
-      return "mesh";
-    case Stage::form_factors:
-      return "form factors";
-    case Stage::closure:
-      return "closure";
-    case Stage::direct_light:
-      return "direct light";
-    case Stage::solve:
-      return "solve";
-    case Stage::error_bars:
-      return "error bars";
-    case Stage::gather:
-      return "gather";
-    case Stage::trace_paths:
-      return "trace paths";
-    case Stage::render:
-      return "render";
-    case Stage::write:
-      return "write";
-  }
-  return "";
+  constexpr std::array names = {"read",  "plan",       "mesh",   "form factors", "closure", "direct light",
+                                "solve", "error bars", "gather", "trace paths",  "render",  "write"};
+  return names.at(static_cast<std::size_t>(stage));
 }
 
 }  // namespace patchlight

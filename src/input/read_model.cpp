@@ -31,11 +31,7 @@ Scene read_xml(const std::filesystem::path& file, double metres_per_unit, const 
 }
 
 // ".obj, .ply, ..."
-std::string allowed_extensions() {
-  std::string list;
-  for (const std::string& format : readable_formats()) list += (list.empty() ? "." : ", .") + format;
-  return list;
-}
+std::string allowed_extensions() { return "." + listed(readable_formats(), ", ."); }
 
 Scene read_format(const std::filesystem::path& file, const std::string& format, double metres_per_unit,
                   const std::filesystem::path& confine) {

@@ -8,8 +8,8 @@
 #include "input/left_out.h"
 #include "input/materials.h"
 #include "input/picture_colours.h"
-#include "input/read_model.h"
 #include "input/read_isolated.h"
+#include "input/read_model.h"
 #include "input/text.h"
 
 #include <Eigen/Core>
@@ -19,6 +19,7 @@
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -393,15 +394,10 @@ Scene read_collada(const std::filesystem::path& file, double metres_per_unit, co
 }
 
 double collada_unit(std::string_view text) {
-  const std::size_t unit = text.find("<unit");
-  if (unit == std::string_view::npos) return 1;
-  const std::string_view element = text.substr(unit, text.find('>', unit) - unit);
-  const std::size_t key = element.find("meter=");
-  if (key == std::string_view::npos || key + 7 >= element.size()) return 1;
-  const std::size_t begin = key + 7;
-  const std::size_t end = element.find_first_of("\"'", begin);
-  const double metres = finite_number(element.substr(begin, end - begin)).value_or(1);
-  return metres > 0 ? metres : 1;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());
+  const double metres = document.select_node("//unit").node().attribute("meter").as_double(1);
+  return metres > 0 && std::isfinite(metres) ? metres : 1;
 }
 
 }  // namespace patchlight

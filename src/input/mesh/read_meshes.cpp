@@ -104,13 +104,26 @@ OffHeader header_of(std::vector<Statement>& statements, const std::string& file)
 
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 
-enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+using PlyBytes = std::array<char, 8>;
+
+// A type of numbers: its size, and how its bytes are read.
+struct PlyType {
+  std::size_t size = 0;
+  double (*value)(const PlyBytes& bytes) = nullptr;
+};
+
+template <typename Number>
+constexpr PlyType ply_type = {sizeof(Number), [](const PlyBytes& bytes) {
+                                Number value;
+                                std::memcpy(&value, bytes.data(), sizeof value);
+                                return static_cast<double>(value);
+                              }};
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::float32;
+  PlyType type = {};
   bool is_list = false;
-  PlyType count_type = PlyType::uint8;  // type of a list's length
+  PlyType count_type = {};  // type of a list's length
 };
 
 struct PlyElement {
@@ -129,12 +142,12 @@ struct PlyHeader {
 
 PlyType type_named(std::string_view name, const std::string& where) {
   static const std::map<std::string_view, PlyType> types = {
-      {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
-      {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
-      {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
-      {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
-      {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
-      {"float64", PlyType::float64}};
+      {"char", ply_type<std::int8_t>},     {"int8", ply_type<std::int8_t>},     {"uchar", ply_type<std::uint8_t>},
+      {"uint8", ply_type<std::uint8_t>},   {"short", ply_type<std::int16_t>},   {"int16", ply_type<std::int16_t>},
+      {"ushort", ply_type<std::uint16_t>}, {"uint16", ply_type<std::uint16_t>}, {"int", ply_type<std::int32_t>},
+      {"int32", ply_type<std::int32_t>},   {"uint", ply_type<std::uint32_t>},   {"uint32", ply_type<std::uint32_t>},
+      {"float", ply_type<float>},          {"float32", ply_type<float>},        {"double", ply_type<double>},
+      {"float64", ply_type<double>}};
   const auto found = types.find(name);
   if (found == types.end())
     throw InputError(where, "found the type '" + std::string(name) + "'; expected one of PLY's");
@@ -175,40 +188,6 @@ std::string_view line_at(std::string_view bytes, std::size_t& begin) {
   begin = std::min(end + 1, bytes.size());
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
-}
-
-std::size_t size_of(PlyType type) {
-  constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-template <typename Value>
-double value_of(const std::array<char, 8>& bytes) {
-  Value value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return static_cast<double>(value);
-}
-
-double number_from(const std::array<char, 8>& bytes, PlyType type) {
-  switch (type) {
-    case PlyType::int8:
-      return value_of<std::int8_t>(bytes);
-    case PlyType::uint8:
-      return value_of<std::uint8_t>(bytes);
-    case PlyType::int16:
-      return value_of<std::int16_t>(bytes);
-    case PlyType::uint16:
-      return value_of<std::uint16_t>(bytes);
-    case PlyType::int32:
-      return value_of<std::int32_t>(bytes);
-    case PlyType::uint32:
-      return value_of<std::uint32_t>(bytes);
-    case PlyType::float32:
-      return value_of<float>(bytes);
-    case PlyType::float64:
-      return value_of<double>(bytes);
-  }
-  return 0;
 }
 
 // Throws InputError naming the line.
@@ -276,14 +255,13 @@ class PlyBody {
   }
 
   double next_bytes(PlyType type) {
-    const std::size_t size = size_of(type);
-    if (rest_.size() < size) throw InputError(file_, "ends before all elements that its header promises");
-    std::array<char, 8> bytes{};
-    std::copy_n(rest_.begin(), size, bytes.begin());
+    if (rest_.size() < type.size) throw InputError(file_, "ends before all elements that its header promises");
+    PlyBytes bytes{};
+    std::copy_n(rest_.begin(), type.size, bytes.begin());
     if (encoding_ == PlyEncoding::big_endian)
-      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    rest_.remove_prefix(size);
-    return number_from(bytes, type);
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(type.size));
+    rest_.remove_prefix(type.size);
+    return type.value(bytes);
   }
 
   std::string_view rest_;

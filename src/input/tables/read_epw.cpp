@@ -160,7 +160,7 @@ WeatherHour parse_epw(const std::string& text, const std::string& file, const In
   for (const TextLine& text_line : logical_lines(text)) {
     const Line line = split(text_line, file);
     if (line.fields[0] == "LOCATION") place = line;
-    if (!finite_number(trimmed(line.fields[0])) || line.fields.size() <= data::hour) continue;
+    if (!is_data(line)) continue;
     if (place.fields.empty()) {
       throw InputError(line.where, "found weather before a line LOCATION; expected an EnergyPlus weather file");
     }
@@ -169,9 +169,8 @@ WeatherHour parse_epw(const std::string& text, const std::string& file, const In
     if (line.number(data::hour, "the hour") != local_time.hour + 1) continue;
     return weather_of(place, line, local_time);
   }
-  throw InputError(file, "found no weather for month " + std::to_string(local_time.month) + ", day " +
-                             std::to_string(local_time.day) + ", hour " +
-                             std::to_string(static_cast<int>(local_time.hour)) +
+  throw InputError(file, "found no weather for " +
+                             in_words(local_time.month, local_time.day, static_cast<int>(local_time.hour)) +
                              "; expected an hour from 0 to 23 of a day that the file has");
 }
 
