@@ -3,12 +3,13 @@
 #include "patchlight/transport/lost_share.h"
 
 #include "annual/adjoint_light.h"
-#include "annual/seen_patches.h"
 #include "annual/sun_year.h"
 #include "annual/year_scene.h"
 #include "base/parallel.h"
 #include "base/tolerances.h"
+#include "gather/planes.h"
 #include "gather/sensor_places.h"
+#include "gather/sources.h"
 #include "lighting/mirror_paths.h"
 #include "pipeline/world.h"
 #include "plan/choose_storage.h"
@@ -26,6 +27,60 @@
 
 namespace patchlight {
 namespace {
+
+// How the radiosity at a point of a patch follows from that of the patches around: B_j + d . sum_i a_i (B_i - B_j), d
+// the way from the centroid. Geometry alone decides it, so that readings are linear in radiosity.
+struct PatchPlane {
+  std::vector<PatchIndex> around;
+  Eigen::Matrix3Xd slopes;  // a_i, 1/m
+};
+
+// Those of all patches; patches between which something stands do not count. Throws Canceled.
+std::vector<PatchPlane> planes_of(const PatchMesh& mesh, const Occluder& occluder, const Observer& observer) {
+  const PlaneFits fits(mesh, occluder);
+  std::vector<PatchPlane> planes(mesh.size());
+  parallel_for(mesh.size(), Stage::gather, observer, [&](std::size_t k) {
+    const auto j = static_cast<PatchIndex>(k);
+    planes[k].around = fits.in_sight(j, fits.patches_around(j));
+    planes[k].slopes = fits.slopes(j, planes[k].around);
+  });
+  return planes;
+}
+
+// How sensors look at patches.
+struct SeenBy {
+  HemisphereRays hemisphere;
+  const PatchMesh& mesh;
+  std::vector<PatchPlane> planes;
+  Eigen::Index bands = 1;
+  double tolerance = 0;  // a sensor nearer to the plane of a patch lies in it, m
+};
+
+// The irradiance at each sensor by a radiosity of 1 on each patch, straight or through panes and mirrors: a row for
+// each patch, for each sensor one column after the other for its bands. `each` rays in each of most_replicates.
+Field seen_patches(const SeenBy& by, std::span<const Sensor> sensors, std::uint32_t each) {
+  const PatchMesh& mesh = by.mesh;
+  Field seen = Field::Zero(mesh.size(), static_cast<Eigen::Index>(sensors.size()) * by.bands);
+  parallel_for(sensors.size(), [&](std::size_t k) {
+    const Sensor& sensor = sensors[k];
+    const auto first = static_cast<Eigen::Index>(k) * by.bands;
+    const auto add = [&](PatchIndex j, const Spectrum& weight) { seen.row(j).segment(first, by.bands) += weight; };
+    for (const HemisphereHit& hit : by.hemisphere.hits(sensor, each, 0).all) {
+      // A sensor on a face does not see the patches of that face.
+      const double height = mesh.normal[hit.patch].dot(sensor.point - mesh.centroid[hit.patch]);
+      if (!hit.is_mirrored && height <= by.tolerance) continue;
+      add(hit.patch, hit.weight);
+      const PatchPlane& plane = by.planes[hit.patch];
+      const Vector way = hit.point - mesh.centroid[hit.patch];
+      for (std::size_t n = 0; n < plane.around.size(); ++n) {
+        const double share = way.dot(plane.slopes.col(static_cast<Eigen::Index>(n)));
+        add(plane.around[n], share * hit.weight);
+        add(hit.patch, -share * hit.weight);
+      }
+    }
+  });
+  return seen;
+}
 
 // Sensors whose columns are solved together.
 constexpr std::size_t sensors_at_once = 32;
