@@ -3,8 +3,8 @@
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/base/field.h"
 #include "patchlight/solve/problem.h"
+#include "patchlight/transport/half_differences.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/transport/sampling_error.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"

@@ -2,7 +2,7 @@
 
 #include "patchlight/accuracy/error_bars.h"
 #include "patchlight/transport/exchange_areas.h"
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "accuracy/errors.h"
@@ -43,11 +43,8 @@ Eigen::VectorXd effects_of_parents(const ExchangeAreas& raw, const NestedMesh& m
                                    const EffectsOf& of);
 
 /// The same for sampling errors: per parent the sum over its patches c and all patches i of A_i w_i^2 (rho_i D_ic
-/// B_c / A_i)^2, relative to
-///
-/// B - E
-///
-/// _A^2, all bands. A source that is cut into more patches gets more samples.
+/// B_c / A_i)^2, relative to the square of the area norm of B - E, all bands. A source that is cut into more patches
+/// gets more samples.
 Eigen::VectorXd noise_of_parents(const HalfDifferences& differences, const NestedMesh& mesh,
                                  const SolvedProblem& solved, const Eigen::VectorXd& weight);
 

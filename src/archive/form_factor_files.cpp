@@ -226,6 +226,9 @@ bool is_earlier_form_factors(const std::filesystem::path& folder) {
                        file_name::dense_error,
                        file_name::sparse_error,
                        file_name::half_differences,
+                       "standard_error.npy",  // of earlier versions
+                       "standard_error.mtx",
+                       "entry_errors.npy",
                        file_name::area,
                        file_name::exitance,
                        file_name::reflectance,

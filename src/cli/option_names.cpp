@@ -97,7 +97,10 @@ std::string with_option_names(const std::string& text, std::span<const OptionNam
     result += name->option;
     k += name->field.size();
     // "--sides both" in place of "mesh.sides=both"
-    if (k < text.size() && text[k] == '=') result += ' ', ++k;
+    if (k < text.size() && text[k] == '=') {
+      result += ' ';
+      ++k;
+    }
   }
   return result;
 }

@@ -81,9 +81,9 @@ std::vector<Field> draw_sampling_errors(const Assembly& raw, const RowTransport&
   return draws;
 }
 
-// The errors of the irradiance by errors of the exposed shares of patches. Where closure brings the entries of a row to
-// the sum that follows from that share, it changes them in proportion to their squares: light of other patches takes
-// the same part of the error as the row, and only the difference of the changing patches' light from the mean counts.
+// The errors of the irradiance by errors of the exposed shares of patches. Closure brings the entries of a row to the
+// sum that follows from that share, and changes them in proportion to their squares. So light of other patches takes
+// the same part of the error as the row. Only the difference of the changing patches' light from the mean counts.
 Field errors_of_exposure(const Simulation& simulation, const ExchangeAreas& S, const SolvedProblem& solved) {
   const Field& irradiance = solved.solution.irradiance;
   const Eigen::ArrayXd relative = exposure_errors(simulation.transport.lost);

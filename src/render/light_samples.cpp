@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace patchlight {

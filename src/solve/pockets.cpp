@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -24,8 +25,6 @@ struct KnownFactors {
   const Eigen::IncompleteLUT<double>* factors = nullptr;
 
   KnownFactors& compute(const SparseRows&) { return *this; }
-  KnownFactors& analyzePattern(const SparseRows&) { return *this; }
-  KnownFactors& factorize(const SparseRows&) { return *this; }
   Eigen::ComputationInfo info() const { return Eigen::Success; }
   template <class Right>
   auto solve(const Right& right) const {
@@ -203,12 +202,14 @@ void raise_to(std::atomic<double>& highest, double value) {
 }  // namespace
 
 PocketSystem system_within(const SparseRows& form_factors, const FieldView& reflectance) {
-  PocketSystem system{.reflectance = reflectance, .factors = {}};
-  const Eigen::Index size = form_factors.rows();
-  if (size > few_patches) return system;
-  for (Eigen::Index band = 0; band < reflectance.cols(); ++band)
-    system.factors.emplace_back(Eigen::MatrixXd::Identity(size, size) -
-                                form_factors * reflectance.col(band).matrix().asDiagonal());
+  PocketSystem system{.reflectance = reflectance, .matrices = {}, .factors = {}};
+  for (Eigen::Index band = 0; band < reflectance.cols(); ++band) {
+    SparseRows matrix = system_matrix(form_factors, reflectance.col(band).matrix());
+    if (matrix.rows() <= few_patches)
+      system.factors.emplace_back(Eigen::MatrixXd(matrix));
+    else
+      system.matrices.push_back(std::move(matrix));
+  }
   return system;
 }
 
@@ -229,8 +230,8 @@ Field solution_within(const Pocket& pocket, const PocketSystem& system, const Fi
     solver.preconditioner().factors = pocket.nearly_solved.get();
     solver.setTolerance(tolerance);
     solver.setMaxIterations(200);
-    const SparseRows matrix = system_matrix(pocket.form_factors, system.reflectance.col(band).matrix());
-    found.col(band) = solver.compute(matrix).solve(right.col(band).matrix()).array();
+    solver.compute(system.matrices[static_cast<std::size_t>(band)]);
+    found.col(band) = solver.solve(right.col(band).matrix()).array();
   }
   return found;
 }
@@ -286,8 +287,13 @@ Field PocketTransport::followed(const Pocket& pocket, const PocketSystem& system
     error = relative_errors(found);
   }
   for (Eigen::Index band = 0; band < found.cols(); ++band) {
-    // A non-finite irradiance has no solution.
-    if (!irradiance.col(band).allFinite()) found.col(band).setConstant(irradiance.col(band).sum());
+    // A non-finite irradiance has no solution. The iteration may break down for a finite one, too.
+    const bool has_solution = irradiance.col(band).allFinite();
+    if (!has_solution) found.col(band).setConstant(irradiance.col(band).sum());
+    if (has_solution && !found.col(band).allFinite()) {
+      found.col(band) = irradiance.col(band);
+      error[band] = std::numeric_limits<double>::infinity();
+    }
     if (error[band] > 0) raise_to(farthest_off_, error[band]);
   }
   return found;

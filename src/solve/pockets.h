@@ -27,13 +27,14 @@ struct Pocket {
   SparseRows form_factors;          ///< F among them, numbered as they stand there
   Eigen::VectorXd bounces;          ///< (I - F rho)^-1 1, rho the highest reflectance of all bands: how often light is
                                     ///< reflected before it gets out
-  /// About the factors of I - F rho, without small entries (ILUT, Saad 1994); null for few patches.
+  /// Incomplete factors of I - F rho (ILUT, Saad 1994); null for pockets of at most 512 patches.
   std::shared_ptr<const Eigen::IncompleteLUT<double>> nearly_solved;
 };
 
 /// I - F R among the patches of a pocket, in each band of R.
 struct PocketSystem {
   Field reflectance;                                          ///< R
+  std::vector<SparseRows> matrices;                           ///< per band of more than 512 patches, else empty
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  ///< per band of up to 512 patches, else empty
 
   bool is_eliminated() const { return !factors.empty(); }
@@ -46,7 +47,7 @@ PocketSystem system_within(const SparseRows& form_factors, const FieldView& refl
 Field residual_within(const Pocket& pocket, const PocketSystem& system, const FieldView& right, const FieldView& x);
 
 /// x in each band: by the factors of the system, or by BiCGSTAB (van der Vorst 1992) until ||r||_2 is below `tolerance`
-/// times ||right||_2, or 200 iterations are done.
+/// times ||right||_2, or about 200 iterations are done.
 Field solution_within(const Pocket& pocket, const PocketSystem& system, const FieldView& right, double tolerance);
 
 /// There are few pockets: where their patches are more than an eighth of all, it is the room that is white.

@@ -87,7 +87,8 @@ class EntryWeights {
 // r_i^2 = sum_j D_ij^2 / sum_j S_ij^2, or the same for all rows where the differences D do not count. Quadrature and
 // rounding leave 1e-4 of entries that were found without shadow rays.
 Eigen::VectorXd relative_errors(const ExchangeAreas& S, const LostShare& lost, const HalfDifferences& differences) {
-  // In a closed scene only the ratios of the weights count, and far too different ones take many iterations.
+  // In a closed scene only the ratios of the weights count, and far too different ones take many iterations. So do
+  // those of many patches.
   if (differences.size() != S.size() || !weighs_by_errors(lost, S.size()))
     return Eigen::VectorXd::Constant(S.size(), entry_error);
   const Field ones = Field::Ones(S.size(), 1);

@@ -5,8 +5,8 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/half_differences.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/transport/sampling_error.h"
 #include "patchlight/transport/transport_operator.h"
 
 #include "mesh/nested_mesh.h"
@@ -49,8 +49,8 @@ struct ClosedExchangeAreas {
 /// Corrects symmetric exchange areas so that row i sums to a_i = A_i (1 - lost_i). It makes the smallest change in the
 /// norm weighted by the variances of the entries. In a closed scene S_ij^2 replaces the variance, and the sums become
 /// exact. In an open scene the standard error of the measured lost share is weighed against those of the rows, which
-/// follow from `differences` and are nearly 0 where no shadow ray was needed. Without differences each entry has an
-/// error of 2 % of S_ij.
+/// follow from `differences` and are nearly 0 where no shadow ray was needed. Without differences, or above 4,096
+/// patches, each entry has an error of 2 % of S_ij.
 ///
 /// If an entry would become negative, a closed scene falls back to symmetric scaling. An open scene falls back to
 /// cutting row sums at the area plus three standard errors. The raw entries stay if no symmetric matrix with this

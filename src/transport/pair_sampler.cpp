@@ -1,6 +1,6 @@
 #include "transport/pair_sampler.h"
 
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include "base/parallel.h"
 #include "base/sampling.h"
@@ -265,7 +265,8 @@ std::array<double, 2> PairSampler::estimates(const Pair& pair) const {
   const double U = pair.unoccluded;
   const auto& [one, other] = pair.halves;
   const double m = one.weighted_rays + other.weighted_rays;
-  if (share == 1 || m < 2) return {share * U, share * U};
+  if (m == 0) return {U * one.idle_seen / one.idle_rays, U * other.idle_seen / other.idle_rays};
+  if (share == 1 || m == 1) return {share * U, share * U};
   // U minus the mean weight has the expectation 0: a control variate. It is multiplied by the visible share of the
   // other samples, from which it is independent, and removes the scatter of the weights. With the same samples it would
   // add a bias.

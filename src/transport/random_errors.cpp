@@ -9,7 +9,7 @@
 namespace patchlight {
 namespace {
 
-// The sum over all pairs i < j with a difference of the values that add(i, j, D_ij, sum) adds to a copy of `zero`.
+// Calls add(i, j, D_ij, sum) for all pairs i < j with a difference. The sum of each stripe starts from `zero`.
 template <typename Add>
 Field sum_over_pairs(const HalfDifferences& differences, const Field& zero, Add add) {
   return sum_over_stripes(differences.size(), stripes, zero, [&](PatchIndex j, Field& sum) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "patchlight/base/field.h"
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include <cstdint>
 

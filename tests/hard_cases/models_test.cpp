@@ -1,7 +1,7 @@
 // Models that are tiny, huge or far from the origin, with degenerate faces or with reversed faces.
 #include "patchlight/simulate.h"
 #include "patchlight/transport/assemble.h"
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include "form_factor/patch_shape.h"
 #include "mesh/mesher.h"

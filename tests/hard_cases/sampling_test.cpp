@@ -3,8 +3,8 @@
 #include "base/sampling.h"
 
 #include "patchlight/transport/assemble.h"
+#include "patchlight/transport/half_differences.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/transport/sampling_error.h"
 
 #include "form_factor/point_polygon.h"
 #include "mesh/mesher.h"

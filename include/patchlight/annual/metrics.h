@@ -40,7 +40,7 @@ enum class SensorMeasure : std::size_t {
   daylight_factor,   ///< percent, under a CIE overcast sky
   half_of_daylight   ///< lx that are reached in half of the daylight hours (EN 17037:2018)
 };
-inline constexpr std::size_t sensor_measures = 10;  ///< how many SensorMeasure has
+inline constexpr std::size_t sensor_measures = 10;  ///< the number of measures
 
 /// The measures of a room, or of all sensors. Means are over its sensors, without those inside walls.
 enum class RoomMeasure : std::size_t {
@@ -58,7 +58,7 @@ enum class RoomMeasure : std::size_t {
   most_of_plane,  ///< lx that 95 % of the sensors reach in half of the daylight hours (EN 17037, minimum)
   grade           ///< EN 17037 table A.1: 0 none, 1 minimum, 2 medium, 3 high
 };
-inline constexpr std::size_t room_measures = 13;  ///< how many RoomMeasure has
+inline constexpr std::size_t room_measures = 13;  ///< the number of measures
 
 /// The name of a measure's column in tables.
 const char* name_of(SensorMeasure measure);

@@ -3,7 +3,7 @@
 #include "patchlight/base/progress.h"
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/exchange_areas.h"
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include <cstdint>
 #include <vector>

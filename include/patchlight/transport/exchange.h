@@ -4,8 +4,8 @@
 #include "patchlight/mesh/patch_mesh.h"
 #include "patchlight/transport/assemble.h"
 #include "patchlight/transport/exchange_areas.h"
+#include "patchlight/transport/half_differences.h"
 #include "patchlight/transport/lost_share.h"
-#include "patchlight/transport/sampling_error.h"
 
 #include <Eigen/Core>
 #include <string>

@@ -396,8 +396,9 @@ Scene read_collada(const std::filesystem::path& file, double metres_per_unit, co
 double collada_unit(std::string_view text) {
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size());
-  const double metres = document.select_node("//unit").node().attribute("meter").as_double(1);
-  return metres > 0 && std::isfinite(metres) ? metres : 1;
+  const char* const stated = document.select_node("//asset/unit").node().attribute("meter").value();
+  const double metres = finite_number(stated).value_or(1);
+  return metres > 0 ? metres : 1;
 }
 
 }  // namespace patchlight

@@ -12,8 +12,8 @@ import { setFlagsFromString } from 'node:v8';
 
 const require = createRequire(import.meta.url);
 
-// Most functions of web-ifc run for less time than the optimizing compiler takes for them. It compiles the hot ones of
-// large models alone, which halves the processor time of a file of 2 MB.
+// Most functions of web-ifc run for less time than the optimizing compiler takes for them. This compiler starts later,
+// so that it compiles the hot functions of large models alone.
 setFlagsFromString('--wasm-tiering-budget=500000000');
 
 function write(line) {

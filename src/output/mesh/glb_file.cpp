@@ -62,7 +62,7 @@ std::size_t GlbFile::add_accessor(const std::string& name, std::size_t begin, st
                    {"count", count},
                    {"type", "VEC" + std::to_string(each)}};
   if (is_share) json["normalized"] = true;
-  if (name == "POSITION") {
+  if (name == "POSITION" && count > 0) {
     std::vector<float> values(count * each);
     std::memcpy(values.data(), bytes_.data() + begin, values.size() * sizeof(float));
     std::vector<float> lowest(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(each)), highest = lowest;

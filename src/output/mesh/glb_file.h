@@ -14,7 +14,7 @@
 
 namespace patchlight {
 
-/// A binary glTF 2.0 with one buffer and one mesh, as it grows.
+/// A binary glTF 2.0 with one buffer and one mesh, built step by step.
 class GlbFile {
  public:
   /// The node of the mesh stands at this translation.
@@ -36,7 +36,7 @@ class GlbFile {
   /// Adds a PNG as texture 0, without smaller versions of it.
   void add_picture(const std::string& png);
 
-  /// Adds triangles with the attributes up to here.
+  /// Adds triangles that use all attributes added before.
   void add_primitive(const std::vector<std::uint32_t>& corners, nlohmann::ordered_json material);
 
   /// Adds to the extras of the asset.

@@ -227,6 +227,7 @@ std::string table(const Study& study) {
 
 const char* name_of(Finding finding) {
   constexpr std::array names = {"interpolated", "at most", "extrapolated", "not reached", "not known"};
+  static_assert(names.size() == static_cast<std::size_t>(Finding::not_known) + 1);
   return names.at(static_cast<std::size_t>(finding));
 }
 

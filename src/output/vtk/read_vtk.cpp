@@ -162,7 +162,12 @@ StoredSolution read_vtk(const std::filesystem::path& file) {
   if (!std::ifstream(file)) throw InputError(file.string(), "cannot be opened; is there such a file?");
   const std::string bytes = bytes_isolated(file.string(), [&] { return message_of(read_here(file)); });
   try {
-    return value_in<StoredSolution>(bytes);
+    StoredSolution stored = value_in<StoredSolution>(bytes);
+    const std::size_t patches = stored.corners.size();
+    const auto is_side = [](Side side) { return side == Side::front || side == Side::back; };
+    if (stored.polygon.size() != patches || stored.side.size() != patches || !std::ranges::all_of(stored.side, is_side))
+      throw std::runtime_error("sizes disagree");
+    return stored;
   } catch (const std::exception&) {
     refuse_file(file, "it cannot be read");
   }

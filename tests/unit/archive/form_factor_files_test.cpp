@@ -227,7 +227,7 @@ TEST(StoredFormFactors, WithErrorsOfOtherPairsAreRefused) {
     put(place / "half_differences.npy", damaged);
     EXPECT_THROW(read_exchange(place, info, found.mesh), InputError);
   }
-  // Earlier versions had bytes without a sign, of another meaning.
+  // Bytes without a sign are refused.
   std::string unsigned_bytes = content;
   unsigned_bytes.replace(content.find("|i1"), 3, "|u1");
   put(place / "half_differences.npy", unsigned_bytes);

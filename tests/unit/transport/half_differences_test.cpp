@@ -1,4 +1,4 @@
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

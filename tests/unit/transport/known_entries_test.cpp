@@ -32,8 +32,8 @@ std::vector<std::uint8_t> some_parents(const NestedMesh& mesh, std::uint64_t see
 
 // Differences of two assemblies of one mesh.
 struct Differences {
-  double largest = 0;     // |a - b| / (max(a, b) + min(A_i, A_j)), and the same of the differences of their halves
-  std::size_t kinds = 0;  // entries whose halves differ in only one of them
+  double largest = 0;  // |a - b| / (max(a, b) + min(A_i, A_j)), and the same of the differences of their halves
+  std::size_t in_one_only = 0;  // entries whose halves differ in only one of them
 };
 
 Differences between(const Assembly& one, const Assembly& other, const PatchMesh& mesh) {
@@ -50,7 +50,7 @@ Differences between(const Assembly& one, const Assembly& other, const PatchMesh&
       const double size = std::max(a, b) + std::min(mesh.area[i], mesh.area[j]);
       found.largest = std::max({found.largest, std::abs(a - b) / size, (std::abs(c - d) - step) / size});
       const bool differs = std::max(std::abs(c), std::abs(d)) > 1e-6 * size;  // by more than rounding
-      found.kinds += differs && (c == 0 || d == 0) ? 1 : 0;
+      found.in_one_only += differs && (c == 0 || d == 0) ? 1 : 0;
     }
   }
   return found;
@@ -82,7 +82,7 @@ TEST(KnownEntries, GiveWhatAFreshAssemblyGives) {
           assemble_exchange_areas(mesh.patches, occluder, keep_errors, {known, std::move(finer.place)});
       const Differences found = between(taken_over, fresh, mesh.patches);
       EXPECT_LT(found.largest, 1e-4);
-      EXPECT_EQ(found.kinds, 0U);
+      EXPECT_EQ(found.in_one_only, 0U);
       // It is cheaper, or nothing was reused.
       EXPECT_LT(taken_over.counts.shadow_rays, fresh.counts.shadow_rays);
 

@@ -1,4 +1,4 @@
-#include "patchlight/transport/sampling_error.h"
+#include "patchlight/transport/half_differences.h"
 
 #include <algorithm>
 #include <cassert>
@@ -45,6 +45,7 @@ double HalfDifferences::at(PatchIndex i, PatchIndex j) const {
 }
 
 void HalfDifferences::set(PatchIndex i, PatchIndex j, double difference) {
+  assert(std::isfinite(difference) && root_of_area_[i] > 0 && root_of_area_[j] > 0);
   const double octaves = std::log2(std::abs(difference) / (root_of_area_[i] * root_of_area_[j]));
   const double steps = largest_code + std::round(steps_per_octave * std::max(octaves, -1e3));
   const double code = std::copysign(std::clamp(steps, 0.0, double{largest_code}), difference);

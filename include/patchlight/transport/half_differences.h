@@ -18,10 +18,11 @@ inline constexpr std::uint32_t most_effort = 32;
 std::uint32_t sampling_effort(double form_factor);
 
 /// The sampling errors of a symmetric matrix of exchange areas. An entry is the mean of the estimates S_1 and S_2 by
-/// the two halves of its samples. Half of their difference, D = (S_1 - S_2) / 2, has the expectation 0. Its variance is
-/// no less than that of the entry, as the second half fills the gaps of the first: a draw of the error, also where all
-/// rays agree by chance. One byte per pair, size()^2 / 2 in all: the sign and the logarithm in quarters of an octave,
-/// accurate to 9 %. Differences below 3e-10 of the geometric mean of the two patches' areas become 0.
+/// the two halves of its samples. Half of their difference, D = (S_1 - S_2) / 2, has the expectation 0. In
+/// practice its variance is no less than that of the entry, as the second half fills the gaps of the first. So D is a
+/// random draw of the error: docs/theory/occluded-form-factors.md. One byte per pair, size()^2 / 2 in all: the sign and
+/// the logarithm in quarters of an octave, accurate to 9 %. Differences below 3e-10 of the geometric mean of the two
+/// patches' areas become 0.
 class HalfDifferences {
  public:
   HalfDifferences() = default;
