@@ -170,7 +170,7 @@ class DocumentedTest(ToolTest):
         def files(*folders):
             return {re.sub(r"_[01](\.npy)$", r"_k\1", file.name) for name in folders for file in (self.folder / name).iterdir()}
 
-        self.assert_same(files("pairs", "open", "matrix") - {"standard_error.mtx"}, documented(section(page, "## Pair method"), {0}) - {".mtx"})
+        self.assert_same(files("pairs", "open", "matrix") - {"sampling_error.mtx"}, documented(section(page, "## Pair method"), {0}) - {".mtx"})
         self.assert_same(files("rows", "specular"), documented(section(page, "## Ray method"), {0}))
         facts = [self.json(f"{name}/info.json") for name in ("pairs", "open", "rows", "specular")]
         for fact in facts:
