@@ -144,7 +144,7 @@ template <std::size_t lanes, std::size_t bands, bool gather, bool push>
 PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t part, const BandRange range,
                                 const TileProduct product) {
   const auto place_of_sums = [&](std::size_t k, std::size_t band) {
-    double* const sums_r = product.sums_I + (r * range.of + range.first) * simd_width + part;
+    double* const sums_r = product.row_sums + (r * range.of + range.first) * simd_width + part;
     return reinterpret_cast<Doubles<lanes>*>(sums_r + (k * range.of + band) * simd_width);
   };
   Block<lanes, bands> sums;
@@ -153,13 +153,14 @@ PATCHLIGHT_INLINE void multiply(const double* wide, std::size_t r, std::size_t p
   Block<lanes, bands> b;
   if constexpr (push) {
     // Where row r is in a packed block; the next rows and bands follow.
-    const double* const b_r = product.b_I + (r / simd_width * range.of + range.first) * simd_width + r % simd_width;
+    const double* const b_r = product.b_rows + (r / simd_width * range.of + range.first) * simd_width + r % simd_width;
     for_block<bands>(
         [&](std::size_t k, std::size_t band) { b[k][band] = Doubles<lanes>{} + b_r[band * simd_width + k]; });
   }
   for (std::size_t c = 0; c < tile_edge; c += simd_width) {
     const std::size_t place = c * range.of + range.first * simd_width + part;
-    multiply_columns<lanes, bands, gather, push>(wide + c + part, b, product.b_J + place, sums, product.out_J + place);
+    multiply_columns<lanes, bands, gather, push>(wide + c + part, b, product.b_columns + place, sums,
+                                                 product.column_sums + place);
   }
   if constexpr (gather)
     for_block<bands>([&](std::size_t k, std::size_t band) { *place_of_sums(k, band) = sums[k][band]; });
@@ -201,12 +202,12 @@ PATCHLIGHT_INLINE void for_bands(const float* tile, int bands, const TileProduct
   }
 }
 
-// The product by registers of `lanes` doubles: b_J and sums_I are looked at where it gathers, b_I and out_J where it
-// pushes.
+// The product by registers of `lanes` doubles. It gathers where there are row sums, and pushes where there are column
+// sums.
 template <std::size_t lanes>
 PATCHLIGHT_INLINE void product_by(const float* tile, int bands, const TileProduct& product) {
-  if (product.out_J == nullptr) return for_bands<lanes, true, false>(tile, bands, product);
-  if (product.sums_I == nullptr) return for_bands<lanes, false, true>(tile, bands, product);
+  if (product.column_sums == nullptr) return for_bands<lanes, true, false>(tile, bands, product);
+  if (product.row_sums == nullptr) return for_bands<lanes, false, true>(tile, bands, product);
   for_bands<lanes, true, true>(tile, bands, product);
 }
 

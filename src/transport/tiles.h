@@ -113,10 +113,10 @@ void push_tile(const float* tile, int bands, const double* b_I, double* out_J);
 
 /// Both at once.
 struct TileProduct {
-  const double* b_I;
-  const double* b_J;
-  double* sums_I;  ///< RowSums::lanes
-  double* out_J;
+  const double* b_rows;     ///< packed values of block I
+  const double* b_columns;  ///< of block J
+  double* row_sums;         ///< RowSums::lanes
+  double* column_sums;      ///< as out_J
 };
 void multiply_tile(const float* tile, int bands, const TileProduct& product);
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-using cairo_t = struct _cairo;  // of cairo.h
+using cairo_t = struct _cairo;  // NOLINT(bugprone-reserved-identifier): a name of cairo.h
 
 namespace patchlight {
 
