@@ -194,6 +194,7 @@ PATCHLIGHT_INLINE void for_bands(const float* tile, int bands, const TileProduct
       alignas(64) double wide[tile_rows * tile_edge];
       const auto later = reinterpret_cast<std::uintptr_t>(tile + r * tile_edge) + prefetch_distance * sizeof(float);
       for (std::size_t line = 0; line < tile_rows * tile_edge * sizeof(float); line += 64) {
+        // NOLINTNEXTLINE(performance-no-int-to-ptr): a pointer past the array would be undefined
         __builtin_prefetch(reinterpret_cast<const void*>(later + line));
       }
       for (std::size_t c = 0; c < tile_rows * tile_edge; ++c) wide[c] = static_cast<double>(tile[r * tile_edge + c]);
@@ -305,11 +306,11 @@ struct Sums {
 
 // Adds the products of the tiles of block row I with b.
 void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, int power, const Sums& sum) {
-  RowSums sums_I(b.bands);
+  RowSums row_sums(b.bands);
   for (PatchIndex J = I; J < Tiles::blocks(S); ++J) {
     const auto multiply_with = [&](const float* tile) {
-      if (I == J) return gather_tile(tile, b.bands, b.block(J), sums_I.lanes.data());
-      multiply_tile(tile, b.bands, {b.block(I), b.block(J), sums_I.lanes.data(), sum.block(J)});
+      if (I == J) return gather_tile(tile, b.bands, b.block(J), row_sums.lanes.data());
+      multiply_tile(tile, b.bands, {b.block(I), b.block(J), row_sums.lanes.data(), sum.block(J)});
     };
     if (power == 1) {
       multiply_with(Tiles::of(S, I, J).data());
@@ -317,7 +318,7 @@ void multiply_row(const ExchangeAreas& S, PatchIndex I, const PackedField& b, in
       multiply_with(squared(Tiles::of(S, I, J)).data());
     }
   }
-  add_sums(sums_I, b.bands, sum.block(I));
+  add_sums(row_sums, b.bands, sum.block(I));
 }
 
 }  // namespace
