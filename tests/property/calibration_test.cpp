@@ -72,9 +72,9 @@ class Calibration : public testing::Test {
 };
 
 // The mean square of differences is no less than that of errors: the second half of the samples fills the gaps of the
-// first. It is no more than twice as large, a root of 1.4. Both hold, too, for pairs that are nearly hidden or nearly
-// visible, most of which have rays that agree. Pairs are independent, so the sum of e^2 - D^2 over the pairs has the
-// variance sum (e^2 - D^2)^2: four standard errors.
+// first. It is no more than twice as large: this bound is measured, not derived. Both hold, too, for pairs that are
+// nearly hidden or nearly visible, most of which have rays that agree. Pairs are independent, so the sum of e^2 - D^2
+// over the pairs has the variance sum (e^2 - D^2)^2: four standard errors.
 TEST_F(Calibration, SquaresOfDifferencesAreThoseOfErrorsOrALittleMore) {
   const std::vector<std::pair<double, double>> ranges{{0, 2}, {0, 0.1}, {0.1, 0.9}, {0.9, 2}};
   for (const auto& [lowest, highest] : ranges) {
